@@ -1,0 +1,7 @@
+//! hullform turns a control mesh into plans on the CPU once, and then one patch a face through Vulkan's control and
+//! evaluation shaders every frame.
+
+pub mod error;
+pub mod mesh;
+
+pub use error::{Error, Place, Result};

@@ -1,0 +1,420 @@
+//! The control mesh: positions, faces and the tags that shape their limit surface.
+
+use glam::{DVec2, DVec3};
+
+use crate::error::{Error, Place, Result};
+
+/// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
+pub const INFINITE_SHARPNESS: f32 = 10.0;
+
+/// How the surface behaves at the mesh's boundary.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BoundaryInterpolation {
+    /// Faces that touch a boundary have no limit surface.
+    None,
+    /// Boundary edges are infinitely sharp creases.
+    #[default]
+    EdgeOnly,
+    /// As `EdgeOnly`, and vertices with a single face are infinitely sharp corners.
+    EdgeAndCorner,
+}
+
+/// How the sharpness of a crease decays from one refinement to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CreaseMethod {
+    /// Each edge loses 1 a level (DeRose, Kass, Truong 1998).
+    #[default]
+    Uniform,
+    /// Sharpness is smoothed along the crease by Chaikin's rule before it loses 1.
+    Chaikin,
+}
+
+/// How the first refinement treats edges of triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TriangleSubdivision {
+    /// Catmull and Clark's weights for every face.
+    #[default]
+    CatmullClark,
+    /// The edge weights of `smoothtriangles`, which avoid ripples over triangles.
+    Smooth,
+}
+
+/// The options of the scheme, as the tags of an OBJ file give them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SchemeOptions {
+    /// Boundary rule (`interpolateboundary`).
+    pub boundary: BoundaryInterpolation,
+    /// Crease decay (`creasemethod`).
+    pub creasing: CreaseMethod,
+    /// Triangle rule (`smoothtriangles`).
+    pub triangles: TriangleSubdivision,
+}
+
+/// A creased edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crease {
+    /// The edge's two vertices, in either order.
+    pub vertices: [u32; 2],
+    /// 0 or more; 10 or more is infinite.
+    pub sharpness: f32,
+}
+
+/// A sharp vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// The vertex.
+    pub vertex: u32,
+    /// 0 or more; 10 or more is infinite.
+    pub sharpness: f32,
+}
+
+/// Texture coordinates: values, and for each corner of each face the index of its value.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FaceVarying {
+    /// The values.
+    pub values: Vec<DVec2>,
+    /// One index a face corner, in the order of the faces' vertices.
+    pub indices: Vec<u32>,
+}
+
+/// Positions, faces of any arity >= 3, and tags. Checked when made: every index is in range, every number finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControlMesh {
+    positions: Vec<DVec3>,
+    face_offsets: Vec<u32>,
+    face_vertices: Vec<u32>,
+    creases: Vec<Crease>,
+    corners: Vec<Corner>,
+    holes: Vec<u32>,
+    texture: Option<FaceVarying>,
+    options: SchemeOptions,
+}
+
+/// Collects what a [`ControlMesh`] is made of; [`build`](ControlMeshBuilder::build) checks it.
+///
+/// ```
+/// use hullform::mesh::ControlMesh;
+/// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = ControlMesh::builder(&positions, &[4], &[0, 1, 2, 3]).crease(0, 1, 2.5).build()?;
+/// assert_eq!(mesh.face(0), [0, 1, 2, 3]);
+/// # Ok::<(), hullform::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ControlMeshBuilder {
+    mesh: ControlMesh,
+    face_sizes: Vec<u32>,
+}
+
+impl ControlMesh {
+    /// Starts a mesh from `positions`, the arity of each face, and the faces' vertices one after another.
+    pub fn builder(
+        positions: &[[f64; 3]],
+        face_sizes: &[u32],
+        face_vertices: &[u32],
+    ) -> ControlMeshBuilder {
+        ControlMeshBuilder {
+            face_sizes: face_sizes.to_vec(),
+            mesh: ControlMesh {
+                positions: positions.iter().copied().map(DVec3::from).collect(),
+                face_offsets: Vec::new(),
+                face_vertices: face_vertices.to_vec(),
+                creases: Vec::new(),
+                corners: Vec::new(),
+                holes: Vec::new(),
+                texture: None,
+                options: SchemeOptions::default(),
+            },
+        }
+    }
+
+    /// The vertices' positions, as given.
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// The number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// The number of faces, holes included.
+    pub fn face_count(&self) -> usize {
+        self.face_offsets.len() - 1
+    }
+
+    /// The vertices of face `face`, in file order.
+    pub fn face(&self, face: usize) -> &[u32] {
+        &self.face_vertices[self.corner_range(face)]
+    }
+
+    /// Where the corners of face `face` stand in arrays with one entry a face corner.
+    pub fn corner_range(&self, face: usize) -> std::ops::Range<usize> {
+        self.face_offsets[face] as usize..self.face_offsets[face + 1] as usize
+    }
+
+    /// The vertices of every face in file order.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        (0..self.face_count()).map(|face| self.face(face))
+    }
+
+    /// The creased edges, as given.
+    pub fn creases(&self) -> &[Crease] {
+        &self.creases
+    }
+
+    /// The sharp vertices, as given.
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// The faces that are holes: they shape their neighbours but are not drawn.
+    pub fn holes(&self) -> &[u32] {
+        &self.holes
+    }
+
+    /// Texture coordinates, when the mesh has any.
+    pub fn texture(&self) -> Option<&FaceVarying> {
+        self.texture.as_ref()
+    }
+
+    /// The scheme's options.
+    pub fn options(&self) -> SchemeOptions {
+        self.options
+    }
+
+    /// The number of ptex faces: one a quad, n an n-gon; holes keep their numbers.
+    pub fn ptex_count(&self) -> usize {
+        self.faces().map(ptex_faces).sum()
+    }
+
+    /// The first ptex number of each face.
+    pub fn ptex_offsets(&self) -> Vec<u32> {
+        let mut next = 0;
+        self.faces()
+            .map(|face| {
+                let first = next;
+                next += ptex_faces(face) as u32;
+                first
+            })
+            .collect()
+    }
+
+    /// The least and greatest corner of the control vertices' bounding box.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let first = self.positions.first().copied().unwrap_or(DVec3::ZERO);
+        self.positions
+            .iter()
+            .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)))
+    }
+}
+
+/// How many ptex faces a face has: one when it is a quad, else one a corner.
+fn ptex_faces(face: &[u32]) -> usize {
+    if face.len() == 4 { 1 } else { face.len() }
+}
+
+impl ControlMeshBuilder {
+    /// Makes the edge `a`-`b` a crease. Sharpness 0 or more; 10 or more is infinite.
+    pub fn crease(mut self, a: u32, b: u32, sharpness: f32) -> Self {
+        self.mesh.creases.push(Crease {
+            vertices: [a, b],
+            sharpness,
+        });
+        self
+    }
+
+    /// Makes `vertex` a corner. Sharpness 0 or more; 10 or more is infinite.
+    pub fn corner(mut self, vertex: u32, sharpness: f32) -> Self {
+        self.mesh.corners.push(Corner { vertex, sharpness });
+        self
+    }
+
+    /// Makes `face` a hole.
+    pub fn hole(mut self, face: u32) -> Self {
+        self.mesh.holes.push(face);
+        self
+    }
+
+    /// Adds texture coordinates: values and one index a face corner.
+    pub fn texture(mut self, texture: FaceVarying) -> Self {
+        self.mesh.texture = Some(texture);
+        self
+    }
+
+    /// Sets the scheme's options.
+    pub fn options(mut self, options: SchemeOptions) -> Self {
+        self.mesh.options = options;
+        self
+    }
+
+    /// Checks everything and hands out the mesh.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a mesh without faces, a face of fewer than three vertices or one that names a vertex twice,
+    /// an index out of range, a position that is not finite, and a tag that names no edge, vertex or face of the mesh.
+    pub fn build(self) -> Result<ControlMesh> {
+        let ControlMeshBuilder {
+            mut mesh,
+            face_sizes,
+        } = self;
+        mesh.face_offsets = offsets(&face_sizes, mesh.face_vertices.len())?;
+        check_positions(&mesh.positions)?;
+        check_faces(&mesh)?;
+        check_tags(&mesh)?;
+        Ok(mesh)
+    }
+}
+
+fn offsets(face_sizes: &[u32], vertices: usize) -> Result<Vec<u32>> {
+    let total: u64 = face_sizes.iter().map(|&size| u64::from(size)).sum();
+    if face_sizes.is_empty() {
+        return Err(Error::input(
+            Place::Mesh,
+            "there is no face",
+            "give at least one face of three or more vertices",
+        ));
+    }
+    if total != vertices as u64 || total > u64::from(u32::MAX) {
+        return Err(Error::input(
+            Place::Mesh,
+            format!("the face sizes add up to {total}, but {vertices} face vertices are given"),
+            "give one vertex index for every corner of every face",
+        ));
+    }
+    let mut next = 0;
+    Ok(std::iter::once(0)
+        .chain(face_sizes.iter().map(|&size| {
+            next += size;
+            next
+        }))
+        .collect())
+}
+
+fn check_positions(positions: &[DVec3]) -> Result<()> {
+    match positions.iter().position(|p| !p.is_finite()) {
+        None => Ok(()),
+        Some(vertex) => Err(Error::input(
+            Place::Vertex(vertex),
+            format!("its position {} is not finite", positions[vertex]),
+            "replace NaN and infinite coordinates by numbers",
+        )),
+    }
+}
+
+fn check_faces(mesh: &ControlMesh) -> Result<()> {
+    let count = mesh.vertex_count();
+    for (number, face) in mesh.faces().enumerate() {
+        let place = || Place::Face(number);
+        if face.len() < 3 {
+            return Err(Error::input(
+                place(),
+                format!("it has {} vertices", face.len()),
+                "faces need three or more vertices",
+            ));
+        }
+        if let Some(vertex) = face.iter().find(|&&vertex| vertex as usize >= count) {
+            return Err(Error::input(
+                place(),
+                format!("it names vertex {vertex}, but the mesh has {count} vertices"),
+                "vertex indices must be below the number of vertices",
+            ));
+        }
+        let mut sorted = face.to_vec();
+        sorted.sort_unstable();
+        if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(Error::input(
+                place(),
+                format!("it names vertex {} twice", pair[0]),
+                "remove the repeated vertex, or split the face",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check_tags(mesh: &ControlMesh) -> Result<()> {
+    let edges: std::collections::HashSet<[u32; 2]> = mesh
+        .faces()
+        .flat_map(|face| (0..face.len()).map(|i| [face[i], face[(i + 1) % face.len()]]))
+        .map(ordered)
+        .collect();
+    for crease in &mesh.creases {
+        let [a, b] = crease.vertices;
+        let place = Place::Edge(a as usize, b as usize);
+        if !edges.contains(&ordered(crease.vertices)) {
+            return Err(Error::input(
+                place,
+                "a crease names it, but no face has this edge",
+                "creases need two neighbouring vertices of a face",
+            ));
+        }
+        check_sharpness(place, crease.sharpness)?;
+    }
+    for corner in &mesh.corners {
+        let place = Place::Vertex(corner.vertex as usize);
+        if corner.vertex as usize >= mesh.vertex_count() {
+            return Err(Error::input(
+                place,
+                "a corner names it, but there is no such vertex",
+                "vertex indices must be below the number of vertices",
+            ));
+        }
+        check_sharpness(place, corner.sharpness)?;
+    }
+    if let Some(&hole) = mesh
+        .holes
+        .iter()
+        .find(|&&hole| hole as usize >= mesh.face_count())
+    {
+        return Err(Error::input(
+            Place::Face(hole as usize),
+            "a hole names it, but there is no such face",
+            "face indices must be below the number of faces",
+        ));
+    }
+    check_texture(mesh)
+}
+
+fn check_sharpness(place: Place, sharpness: f32) -> Result<()> {
+    if sharpness >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        format!("its sharpness {sharpness} is not a number of 0 or more"),
+        "sharpness goes from 0 (smooth) to 10 (infinite)",
+    ))
+}
+
+fn check_texture(mesh: &ControlMesh) -> Result<()> {
+    let Some(texture) = &mesh.texture else {
+        return Ok(());
+    };
+    let (corners, values) = (mesh.face_vertices.len(), texture.values.len());
+    let problem = if texture.indices.len() != corners {
+        format!(
+            "{} texture indices are given for {corners} face corners",
+            texture.indices.len()
+        )
+    } else if let Some(index) = texture
+        .indices
+        .iter()
+        .find(|&&index| index as usize >= values)
+    {
+        format!("texture index {index} is out of range, there are {values} texture coordinates")
+    } else if let Some(value) = texture.values.iter().find(|value| !value.is_finite()) {
+        format!("the texture coordinate {value} is not finite")
+    } else {
+        return Ok(());
+    };
+    Err(Error::input(
+        Place::Mesh,
+        problem,
+        "give one finite texture coordinate for every face corner",
+    ))
+}
+
+/// The two vertices of an edge, the lesser first.
+pub(crate) fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}

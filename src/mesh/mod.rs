@@ -1,0 +1,12 @@
+//! The control mesh and what surrounds each of its faces.
+
+mod builtin;
+mod control_mesh;
+mod obj;
+
+pub use builtin::{BUILTINS, builtin};
+pub use control_mesh::{
+    BoundaryInterpolation, ControlMesh, ControlMeshBuilder, Corner, Crease, CreaseMethod,
+    FaceVarying, INFINITE_SHARPNESS, SchemeOptions, TriangleSubdivision,
+};
+pub use obj::{read_obj, read_obj_bytes};

@@ -3,5 +3,7 @@
 
 pub mod error;
 pub mod mesh;
+pub mod patch;
+pub mod subdivision;
 
 pub use error::{Error, Place, Result};

@@ -3,6 +3,8 @@
 mod builtin;
 mod control_mesh;
 mod obj;
+pub mod sharpness;
+pub mod topology;
 
 pub use builtin::{BUILTINS, builtin};
 pub use control_mesh::{

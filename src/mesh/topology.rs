@@ -1,0 +1,518 @@
+//! Who touches whom: faces, edges and vertices with their sharpness, for a whole mesh or the surroundings of a few faces.
+//!
+//! Nothing here assumes a manifold: an edge may have any number of faces, and faces may disagree in orientation. What such places
+//! mean for the limit is settled once, in [`Topology::new`], the way OpenSubdiv settles it: boundary and non-manifold edges
+//! become infinitely sharp, and so do non-manifold vertices other than those on a plain non-manifold crease.
+
+use std::collections::HashMap;
+
+use crate::mesh::control_mesh::ordered;
+use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
+use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, SchemeOptions};
+
+/// Lists of different lengths, one after another.
+#[derive(Clone, Debug, Default)]
+pub struct Lists<T> {
+    offsets: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T: Copy + Default> Lists<T> {
+    /// Sorts `(list, item)` pairs into `count` lists, keeping the order within each.
+    fn gather(count: usize, pairs: impl Iterator<Item = (u32, T)> + Clone) -> Lists<T> {
+        let mut offsets = vec![0u32; count + 1];
+        for (list, _) in pairs.clone() {
+            offsets[list as usize + 1] += 1;
+        }
+        for i in 0..count {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut next = offsets.clone();
+        let mut items = vec![T::default(); offsets[count] as usize];
+        for (list, item) in pairs {
+            items[next[list as usize] as usize] = item;
+            next[list as usize] += 1;
+        }
+        Lists { offsets, items }
+    }
+
+    /// The list with number `list`.
+    pub fn get(&self, list: u32) -> &[T] {
+        &self.items[self.offsets[list as usize] as usize..self.offsets[list as usize + 1] as usize]
+    }
+}
+
+/// An edge and how sharp it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Its ends.
+    pub vertices: [u32; 2],
+    /// Sharpness at this level.
+    pub sharpness: f32,
+    /// Sharpness, at the next level, of the half at each end. The two differ only under Chaikin's rule.
+    pub next: [f32; 2],
+}
+
+impl Edge {
+    /// The end that is not `vertex`.
+    pub fn other(&self, vertex: u32) -> u32 {
+        self.vertices[0] ^ self.vertices[1] ^ vertex
+    }
+
+    /// Sharpness at the next level of the half that ends in `vertex`.
+    pub fn next_at(&self, vertex: u32) -> f32 {
+        self.next[usize::from(self.vertices[1] == vertex)]
+    }
+}
+
+/// A corner of a face: the face, and the number of the corner in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FaceCorner {
+    /// The face.
+    pub face: u32,
+    /// The corner, counted from the face's first vertex.
+    pub corner: u32,
+}
+
+/// Faces, edges, vertices, how they touch, and their sharpness.
+#[derive(Clone, Debug, Default)]
+pub struct Topology {
+    face_offsets: Vec<u32>,
+    face_vertices: Vec<u32>,
+    face_edges: Vec<u32>,
+    edges: Vec<Edge>,
+    edge_faces: Lists<u32>,
+    vertex_faces: Lists<FaceCorner>,
+    vertex_edges: Lists<u32>,
+    vertex_sharpness: Vec<f32>,
+    holes: Vec<bool>,
+    options: SchemeOptions,
+}
+
+impl Topology {
+    /// The topology of a whole control mesh, with boundary rules and non-manifold places turned into sharpness.
+    pub fn new(mesh: &ControlMesh) -> Topology {
+        let mut edge_sharpness = HashMap::new();
+        for crease in mesh.creases() {
+            edge_sharpness.insert(ordered(crease.vertices), clamp(crease.sharpness));
+        }
+        let mut vertex_sharpness = vec![0.0; mesh.vertex_count()];
+        for corner in mesh.corners() {
+            vertex_sharpness[corner.vertex as usize] = clamp(corner.sharpness);
+        }
+        let mut topology =
+            Topology::connect(mesh.faces(), vertex_sharpness, mesh.options(), |a, b| {
+                let sharpness = edge_sharpness.get(&ordered([a, b])).copied().unwrap_or(0.0);
+                (sharpness, [0.0; 2])
+            });
+        for &hole in mesh.holes() {
+            topology.holes[hole as usize] = true;
+        }
+        topology.sharpen();
+        topology.foresee();
+        topology
+    }
+
+    /// Connects faces whose sharpness is known: `edge(a, b)` tells that of an edge now and, at the ends `a` and `b`, next.
+    pub(crate) fn connect<'a>(
+        faces: impl Iterator<Item = &'a [u32]>,
+        vertex_sharpness: Vec<f32>,
+        options: SchemeOptions,
+        edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
+    ) -> Topology {
+        let mut topology = Topology {
+            face_offsets: vec![0],
+            vertex_sharpness,
+            options,
+            ..Default::default()
+        };
+        let mut numbers: HashMap<[u32; 2], u32> = HashMap::new();
+        for face in faces {
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                let number = *numbers.entry(ordered([a, b])).or_insert_with(|| {
+                    let (sharpness, next) = edge(a, b);
+                    topology.edges.push(Edge {
+                        vertices: [a, b],
+                        sharpness,
+                        next,
+                    });
+                    topology.edges.len() as u32 - 1
+                });
+                topology.face_edges.push(number);
+            }
+            topology.face_vertices.extend_from_slice(face);
+            topology
+                .face_offsets
+                .push(topology.face_vertices.len() as u32);
+        }
+        topology.holes = vec![false; topology.face_count()];
+        topology.relate();
+        topology
+    }
+
+    /// The given faces as a topology of their own, with the numbers that its vertices have here.
+    pub(crate) fn excerpt(&self, faces: &[u32]) -> (Topology, Vec<u32>) {
+        let mut numbers = HashMap::new();
+        let mut vertices = Vec::new();
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                vertices.push(vertex);
+                vertices.len() as u32 - 1
+            })
+        };
+        let local: Vec<Vec<u32>> = faces
+            .iter()
+            .map(|&face| self.face(face).iter().map(|&v| number(v)).collect())
+            .collect();
+        let sharpness = vertices
+            .iter()
+            .map(|&vertex| self.vertex_sharpness(vertex))
+            .collect();
+        let topology = Topology::connect(
+            local.iter().map(|face| &face[..]),
+            sharpness,
+            self.options,
+            |a, b| {
+                let [a, b] = [a, b].map(|local| vertices[local as usize]);
+                let edge = self
+                    .find_edge(a, b)
+                    .expect("an edge of a face is an edge of the mesh");
+                (edge.sharpness, [edge.next_at(a), edge.next_at(b)])
+            },
+        );
+        (topology, vertices)
+    }
+
+    fn find_edge(&self, a: u32, b: u32) -> Option<&Edge> {
+        let edges = self.vertex_edges(a).iter().map(|&edge| self.edge(edge));
+        edges.into_iter().find(|edge| edge.other(a) == b)
+    }
+
+    /// Fills the lists that answer "which faces and edges touch".
+    fn relate(&mut self) {
+        let corners =
+            |face: u32| self.face_offsets[face as usize]..self.face_offsets[face as usize + 1];
+        let faces = 0..self.face_count() as u32;
+        let edge_faces = faces
+            .clone()
+            .flat_map(|face| corners(face).map(move |at| (at, face)))
+            .map(|(at, face)| (self.face_edges[at as usize], face));
+        let vertex_faces = faces.flat_map(|face| {
+            corners(face).enumerate().map(move |(corner, at)| {
+                (
+                    at,
+                    FaceCorner {
+                        face,
+                        corner: corner as u32,
+                    },
+                )
+            })
+        });
+        let vertex_faces =
+            vertex_faces.map(|(at, corner)| (self.face_vertices[at as usize], corner));
+        let vertex_edges = self
+            .edges
+            .iter()
+            .enumerate()
+            .flat_map(|(number, edge)| edge.vertices.map(|vertex| (vertex, number as u32)));
+        let edge_faces = Lists::gather(self.edges.len(), edge_faces);
+        let vertex_faces = Lists::gather(self.vertex_sharpness.len(), vertex_faces);
+        self.vertex_edges = Lists::gather(self.vertex_sharpness.len(), vertex_edges);
+        self.edge_faces = edge_faces;
+        self.vertex_faces = vertex_faces;
+    }
+
+    /// Boundary and non-manifold rules, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
+    fn sharpen(&mut self) {
+        if self.options.boundary == BoundaryInterpolation::None {
+            self.open_boundary_faces();
+        }
+        let manifold: Vec<bool> = (0..self.edges.len() as u32)
+            .map(|edge| self.is_manifold_edge(edge))
+            .collect();
+        for (number, manifold) in manifold.iter().enumerate() {
+            if self.edge_faces.get(number as u32).len() < 2 || !manifold {
+                self.edges[number].sharpness = INFINITE_SHARPNESS;
+            }
+        }
+        for vertex in 0..self.vertex_count() as u32 {
+            if self.is_interpolated_corner(vertex) || self.is_non_manifold_corner(vertex, &manifold)
+            {
+                self.vertex_sharpness[vertex as usize] = INFINITE_SHARPNESS;
+            }
+        }
+    }
+
+    /// Without boundary interpolation, faces that touch a boundary which no tag makes infinitely sharp have no limit: they are holes.
+    fn open_boundary_faces(&mut self) {
+        for edge in 0..self.edges.len() as u32 {
+            if self.edge_faces.get(edge).len() >= 2
+                || is_infinite(self.edges[edge as usize].sharpness)
+            {
+                continue;
+            }
+            for vertex in self.edges[edge as usize].vertices {
+                for corner in self.vertex_faces.get(vertex) {
+                    self.holes[corner.face as usize] = true;
+                }
+            }
+        }
+    }
+
+    /// Whether an edge has at most two faces, and two walk it in opposite directions.
+    fn is_manifold_edge(&self, edge: u32) -> bool {
+        let [a, _] = self.edges[edge as usize].vertices;
+        let forward = |&face: &u32| {
+            let corner = self.face_edges(face).iter().position(|&e| e == edge);
+            corner.is_some_and(|corner| self.face(face)[corner] == a)
+        };
+        match self.edge_faces.get(edge) {
+            [] | [_] => true,
+            [first, second] => forward(first) != forward(second),
+            _ => false,
+        }
+    }
+
+    fn is_interpolated_corner(&self, vertex: u32) -> bool {
+        self.options.boundary == BoundaryInterpolation::EdgeAndCorner
+            && self.vertex_faces.get(vertex).len() == 1
+            && self.vertex_edges.get(vertex).len() == 2
+    }
+
+    /// A non-manifold vertex is a corner, unless it merely lies on a crease of two non-manifold edges inside the mesh.
+    fn is_non_manifold_corner(&self, vertex: u32, manifold: &[bool]) -> bool {
+        let (edges, faces) = (self.vertex_edges.get(vertex), self.vertex_faces.get(vertex));
+        let non_manifold = edges
+            .iter()
+            .filter(|&&edge| !manifold[edge as usize])
+            .count();
+        if non_manifold == 0 {
+            return !faces.is_empty() && !self.is_single_fan(vertex);
+        }
+        let boundaries = edges
+            .iter()
+            .filter(|&&edge| self.edge_faces.get(edge).len() < 2)
+            .count();
+        !(non_manifold == 2 && boundaries == 0 && faces.len() > edges.len())
+    }
+
+    /// Whether the faces around `vertex` hang together across its edges.
+    fn is_single_fan(&self, vertex: u32) -> bool {
+        let corners = self.vertex_faces.get(vertex);
+        let mut reached = vec![corners[0].face];
+        let mut next = 0;
+        while next < reached.len() {
+            for edge in self.edges_at(reached[next], vertex) {
+                for &face in self.edge_faces.get(edge) {
+                    if !reached.contains(&face) {
+                        reached.push(face);
+                    }
+                }
+            }
+            next += 1;
+        }
+        reached.len() == corners.len()
+    }
+
+    /// Computes each edge's sharpness at the next level.
+    fn foresee(&mut self) {
+        for vertex in 0..self.vertex_count() as u32 {
+            let around = self.vertex_edges.get(vertex);
+            let sharpness = around
+                .iter()
+                .map(|&edge| self.edges[edge as usize].sharpness);
+            let next = decayed_around_vertex(self.options.creasing, &sharpness.collect::<Vec<_>>());
+            for (&edge, next) in around.iter().zip(next) {
+                let edge = &mut self.edges[edge as usize];
+                edge.next[usize::from(edge.vertices[1] == vertex)] = next;
+            }
+        }
+    }
+
+    /// The number of faces.
+    pub fn face_count(&self) -> usize {
+        self.face_offsets.len() - 1
+    }
+
+    /// The number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_sharpness.len()
+    }
+
+    /// The number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// The vertices of a face.
+    pub fn face(&self, face: u32) -> &[u32] {
+        &self.face_vertices[self.face_offsets[face as usize] as usize
+            ..self.face_offsets[face as usize + 1] as usize]
+    }
+
+    /// The edges of a face; edge i joins its vertices i and i + 1.
+    pub fn face_edges(&self, face: u32) -> &[u32] {
+        &self.face_edges[self.face_offsets[face as usize] as usize
+            ..self.face_offsets[face as usize + 1] as usize]
+    }
+
+    /// An edge by number.
+    pub fn edge(&self, edge: u32) -> &Edge {
+        &self.edges[edge as usize]
+    }
+
+    /// The faces on an edge.
+    pub fn edge_faces(&self, edge: u32) -> &[u32] {
+        self.edge_faces.get(edge)
+    }
+
+    /// The face corners at a vertex.
+    pub fn vertex_faces(&self, vertex: u32) -> &[FaceCorner] {
+        self.vertex_faces.get(vertex)
+    }
+
+    /// The edges at a vertex.
+    pub fn vertex_edges(&self, vertex: u32) -> &[u32] {
+        self.vertex_edges.get(vertex)
+    }
+
+    /// The sharpness of a vertex.
+    pub fn vertex_sharpness(&self, vertex: u32) -> f32 {
+        self.vertex_sharpness[vertex as usize]
+    }
+
+    /// Whether a face is a hole: it shapes its neighbours but is not drawn.
+    pub fn is_hole(&self, face: u32) -> bool {
+        self.holes[face as usize]
+    }
+
+    /// The scheme's options.
+    pub fn options(&self) -> SchemeOptions {
+        self.options
+    }
+
+    /// The two edges of `face` that meet in `vertex`.
+    fn edges_at(&self, face: u32, vertex: u32) -> [u32; 2] {
+        let vertices = self.face(face);
+        let corner = vertices
+            .iter()
+            .position(|&v| v == vertex)
+            .expect("the face has this vertex");
+        let edges = self.face_edges(face);
+        [
+            edges[corner],
+            edges[(corner + vertices.len() - 1) % vertices.len()],
+        ]
+    }
+
+    /// Steps around `vertex` from `face` across `edge`: the face on the other side and its other edge at the vertex.
+    /// None where the edge has not exactly two faces.
+    fn step(&self, vertex: u32, face: u32, edge: u32) -> Option<(u32, u32)> {
+        let &[first, second] = self.edge_faces.get(edge) else {
+            return None;
+        };
+        let beyond = if first == face { second } else { first };
+        let [a, b] = self.edges_at(beyond, vertex);
+        Some((beyond, if a == edge { b } else { a }))
+    }
+
+    /// The sector around corner `corner` of `face` that infinitely sharp edges and boundaries leave; see [`Fan`].
+    pub fn fan(&self, face: u32, corner: u32) -> Fan {
+        let arity = self.face(face).len();
+        let vertex = self.face(face)[corner as usize];
+        let first = self.face_edges(face)[corner as usize];
+        let last = self.face_edges(face)[(corner as usize + arity - 1) % arity];
+        let mut fan = Fan {
+            vertex,
+            edges: vec![first, last],
+            faces: vec![face],
+            at: 0,
+            closed: false,
+        };
+        while let Some((next, edge)) = self.crossing(
+            &fan,
+            *fan.faces.last().expect("never empty"),
+            fan.edges[fan.edges.len() - 1],
+        ) {
+            if next == face {
+                fan.closed = true;
+                fan.edges.pop();
+                return fan;
+            }
+            fan.faces.push(next);
+            fan.edges.push(edge);
+        }
+        let mut before = Vec::new();
+        let (mut here, mut across) = (face, first);
+        while let Some((next, edge)) = self.crossing(&fan, here, across) {
+            before.push((next, edge));
+            (here, across) = (next, edge);
+        }
+        fan.at = before.len();
+        before.reverse();
+        fan.faces.splice(0..0, before.iter().map(|&(face, _)| face));
+        fan.edges.splice(0..0, before.iter().map(|&(_, edge)| edge));
+        fan
+    }
+
+    fn crossing(&self, fan: &Fan, face: u32, edge: u32) -> Option<(u32, u32)> {
+        if is_infinite(self.edges[edge as usize].sharpness) {
+            None
+        } else {
+            self.step(fan.vertex, face, edge)
+        }
+    }
+
+    /// How many sharp edges meet in `vertex`.
+    pub fn sharp_edges(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        self.vertex_edges
+            .get(vertex)
+            .iter()
+            .copied()
+            .filter(|&edge| is_sharp(self.edges[edge as usize].sharpness))
+    }
+
+    /// Every face around `vertex` and the edge across which it was reached, beginning behind `edge` of `face` and going on until
+    /// the walk returns or a boundary or non-manifold edge ends it. Unlike [`Topology::fan`] it crosses sharp edges.
+    pub(crate) fn walk(
+        &self,
+        vertex: u32,
+        face: u32,
+        edge: u32,
+    ) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let mut state = (face, edge);
+        std::iter::from_fn(move || {
+            let across = state.1;
+            let (next, edge) = self.step(vertex, state.0, across)?;
+            if next == face {
+                return None;
+            }
+            state = (next, edge);
+            Some((next, across))
+        })
+    }
+}
+
+/// The faces around a vertex from one infinitely sharp (or boundary) edge to the next, or all the way round.
+///
+/// They are in counter-clockwise order as seen from the side that the asking face turns to: face j lies between edges j and j + 1.
+/// A closed fan has as many edges as faces, an open one has one edge more.
+#[derive(Clone, Debug)]
+pub struct Fan {
+    /// The vertex in the middle.
+    pub vertex: u32,
+    /// The edges in order.
+    pub edges: Vec<u32>,
+    /// The faces in order.
+    pub faces: Vec<u32>,
+    /// The number, among `faces`, of the face that asked.
+    pub at: usize,
+    /// Whether it goes all the way round.
+    pub closed: bool,
+}
+
+/// Sharpness beyond infinity says nothing more; one value for it keeps equal configurations equal.
+fn clamp(sharpness: f32) -> f32 {
+    sharpness.min(INFINITE_SHARPNESS)
+}

@@ -1,0 +1,249 @@
+//! The limit surface at any point of any face, by recursive refinement.
+
+use glam::{DVec2, DVec3};
+
+use crate::mesh::ControlMesh;
+use crate::mesh::topology::Topology;
+use crate::patch::bspline;
+use crate::subdivision::limit::{LimitStencil, limit_stencil};
+use crate::subdivision::masks::Blend;
+use crate::subdivision::refine::{refine, with_neighbours};
+use crate::subdivision::regular::bspline_patch;
+
+/// The subdivision scheme whose limit is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scheme {
+    /// Catmull and Clark's.
+    #[default]
+    CatmullClark,
+    /// Linear refinement: the faces themselves, n-gons as one quad a corner around their mean.
+    Bilinear,
+}
+
+/// A point of the limit surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitSample {
+    /// Position, in the units of the mesh.
+    pub position: DVec3,
+    /// Derivative by u. At an extraordinary vertex it has no length of its own: there only the plane of `du` and `dv` counts.
+    pub du: DVec3,
+    /// Derivative by v.
+    pub dv: DVec3,
+}
+
+impl LimitSample {
+    /// The unit normal, on the side from which the face runs counter-clockwise; zero where the tangents are parallel.
+    pub fn normal(&self) -> DVec3 {
+        self.du
+            .normalize_or_zero()
+            .cross(self.dv.normalize_or_zero())
+            .normalize_or_zero()
+    }
+}
+
+/// The limit surface of a control mesh: the truth that everything else is measured against.
+///
+/// Faces are ptex faces: in file order a quad takes one number and an n-gon n, one a corner; holes keep theirs. Of a quad v0 v1 v2 v3,
+/// (0,0) is v0, (1,0) v1, (1,1) v2 and (0,1) v3; of corner i of an n-gon, (0,0) is the corner, (1,0) the middle of the edge that leaves
+/// it, (1,1) the face's centre and (0,1) the middle of the edge that arrives.
+#[derive(Clone, Debug)]
+pub struct LimitSurface {
+    topology: Topology,
+    positions: Vec<DVec3>,
+    ptex: Vec<(u32, u32)>,
+    scheme: Scheme,
+}
+
+/// A face in its surroundings at some level.
+struct Cell {
+    topology: Topology,
+    positions: Vec<DVec3>,
+}
+
+/// Refinement halves the distance to an extraordinary vertex; after so many halvings nothing of an f64 is left.
+const DEEPEST: u32 = 60;
+
+impl LimitSurface {
+    /// The Catmull-Clark limit of a mesh.
+    pub fn new(mesh: &ControlMesh) -> LimitSurface {
+        LimitSurface::of_scheme(mesh, Scheme::CatmullClark)
+    }
+
+    /// The limit of a mesh under a scheme.
+    pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
+        let ptex = mesh.faces().enumerate().flat_map(|(face, vertices)| {
+            let corners = if vertices.len() == 4 {
+                1
+            } else {
+                vertices.len()
+            };
+            (0..corners).map(move |corner| (face as u32, corner as u32))
+        });
+        LimitSurface {
+            topology: Topology::new(mesh),
+            positions: mesh.positions().to_vec(),
+            ptex: ptex.collect(),
+            scheme,
+        }
+    }
+
+    /// The topology with its final sharpness.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// The number of ptex faces.
+    pub fn ptex_count(&self) -> usize {
+        self.ptex.len()
+    }
+
+    /// The face of a ptex number and its corner there (0 for quads).
+    pub fn face_corner(&self, ptex: usize) -> (u32, u32) {
+        self.ptex[ptex]
+    }
+
+    /// The limit at (u, v), each in 0..=1, of a ptex face; None in a hole.
+    pub fn evaluate(&self, ptex: usize, u: f64, v: f64) -> Option<LimitSample> {
+        let (face, corner) = self.ptex[ptex];
+        if self.topology.is_hole(face) {
+            return None;
+        }
+        let uv = DVec2::new(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+        Some(match self.scheme {
+            Scheme::CatmullClark => self.catmull_clark(face, corner, uv),
+            Scheme::Bilinear => self.bilinear(face, corner, uv),
+        })
+    }
+
+    fn catmull_clark(&self, face: u32, corner: u32, mut uv: DVec2) -> LimitSample {
+        let mut cell = self.surroundings(face);
+        if cell.topology.face(0).len() != 4 {
+            cell = cell.child(corner);
+        }
+        let mut scale = 1.0;
+        for depth in 0.. {
+            if let Some(corner) =
+                corner_at(uv).or_else(|| (depth == DEEPEST).then(|| nearest_corner(uv)))
+            {
+                return scaled(cell.limit(corner), scale);
+            }
+            if let Some(sample) = cell.regular(uv) {
+                return scaled(sample, scale);
+            }
+            let corner = nearest_corner(uv);
+            cell = cell.child(corner);
+            uv = 2.0 * uv
+                - DVec2::from([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][corner as usize]);
+            scale *= 2.0;
+        }
+        unreachable!("the walk ends at DEEPEST")
+    }
+
+    fn bilinear(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
+        let points: Vec<DVec3> = self
+            .topology
+            .face(face)
+            .iter()
+            .map(|&v| self.positions[v as usize])
+            .collect();
+        let (n, i) = (points.len(), corner as usize);
+        let [a, b, c, d] = if n == 4 {
+            [points[0], points[1], points[2], points[3]]
+        } else {
+            let centre = points.iter().sum::<DVec3>() / n as f64;
+            [
+                points[i],
+                (points[i] + points[(i + 1) % n]) / 2.0,
+                centre,
+                (points[i] + points[(i + n - 1) % n]) / 2.0,
+            ]
+        };
+        LimitSample {
+            position: a.lerp(b, uv.x).lerp(d.lerp(c, uv.x), uv.y),
+            du: (b - a).lerp(c - d, uv.y),
+            dv: (d - a).lerp(c - b, uv.x),
+        }
+    }
+
+    /// A face with all that touches it, as a mesh of its own whose face 0 it is.
+    fn surroundings(&self, face: u32) -> Cell {
+        let (topology, vertices) = self
+            .topology
+            .excerpt(&with_neighbours(&self.topology, &[face]));
+        Cell {
+            topology,
+            positions: vertices
+                .iter()
+                .map(|&v| self.positions[v as usize])
+                .collect(),
+        }
+    }
+}
+
+impl Cell {
+    /// The child at a corner.
+    fn child(&self, corner: u32) -> Cell {
+        let refined = refine(&self.topology, &[(0, corner)]);
+        let positions = refined
+            .masks
+            .iter()
+            .map(|mask| DVec3::blend(mask, &self.positions))
+            .collect();
+        Cell {
+            topology: refined.topology,
+            positions,
+        }
+    }
+
+    /// The limit at a corner, after as many refinements as its sharpness and its faces' arities ask for.
+    fn limit(&self, corner: u32) -> LimitSample {
+        match limit_stencil(&self.topology, 0, corner) {
+            Some(LimitStencil { position, du, dv }) => LimitSample {
+                position: DVec3::blend(&position, &self.positions),
+                du: DVec3::blend(&du, &self.positions),
+                dv: DVec3::blend(&dv, &self.positions),
+            },
+            None => scaled(self.child(corner).limit(corner), 2.0),
+        }
+    }
+
+    /// The B-spline at (u, v), when the face is one without semi-sharp creases.
+    fn regular(&self, uv: DVec2) -> Option<LimitSample> {
+        let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
+        let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
+        let mut sample = LimitSample {
+            position: DVec3::ZERO,
+            du: DVec3::ZERO,
+            dv: DVec3::ZERO,
+        };
+        for (i, point) in patch.points.iter().enumerate() {
+            let point = DVec3::blend(&point.mask(), &self.positions);
+            sample.position += point * u.value[i % 4] * v.value[i / 4];
+            sample.du += point * u.derivative[i % 4] * v.value[i / 4];
+            sample.dv += point * u.value[i % 4] * v.derivative[i / 4];
+        }
+        Some(sample)
+    }
+}
+
+fn scaled(sample: LimitSample, scale: f64) -> LimitSample {
+    LimitSample {
+        du: sample.du * scale,
+        dv: sample.dv * scale,
+        ..sample
+    }
+}
+
+fn corner_at(uv: DVec2) -> Option<u32> {
+    let exact = |x: f64| x == 0.0 || x == 1.0;
+    (exact(uv.x) && exact(uv.y)).then(|| nearest_corner(uv))
+}
+
+fn nearest_corner(uv: DVec2) -> u32 {
+    match (uv.x < 0.5, uv.y < 0.5) {
+        (true, true) => 0,
+        (false, true) => 1,
+        (false, false) => 2,
+        (true, false) => 3,
+    }
+}

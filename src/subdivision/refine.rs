@@ -1,0 +1,180 @@
+//! One step of refinement around chosen faces.
+//!
+//! A child face needs nothing but its parent's 1-ring: every vertex around it, and the sharpness of every edge at its corners, comes
+//! from faces that touch the parent. So a step keeps the children of some cells and the faces that touch them, and the same holds
+//! for the next step. What lies on the rim of such a topology has the wrong rules; no cell ever asks for it.
+
+use std::collections::HashMap;
+
+use crate::mesh::sharpness::{decayed, decayed_around_vertex};
+use crate::mesh::topology::Topology;
+use crate::subdivision::masks::{Mask, edge_point, face_point, vertex_point};
+
+/// A refined topology, and how its vertices come from the parent's.
+#[derive(Clone, Debug, Default)]
+pub struct Refinement {
+    /// The children of the chosen cells first, in the order of the cells and their corners, then the faces that touch them.
+    pub topology: Topology,
+    /// The mask of each vertex over the parent's vertices.
+    pub masks: Vec<Mask>,
+    /// The number of faces that are children of chosen cells.
+    pub cells: u32,
+}
+
+/// A vertex of the next level: a face, edge or vertex of this one.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Origin {
+    Face(u32),
+    Edge(u32),
+    Vertex(u32),
+}
+
+/// The child of `face` at `corner`. A quad's child turns so that corner i is its vertex i and (u, v) run as the parent's;
+/// an n-gon's child begins at the corner, as its ptex face does.
+fn child(topology: &Topology, face: u32, corner: u32) -> [Origin; 4] {
+    let (vertices, edges) = (topology.face(face), topology.face_edges(face));
+    let (corner, arity) = (corner as usize, vertices.len());
+    let mut child = [
+        Origin::Vertex(vertices[corner]),
+        Origin::Edge(edges[corner]),
+        Origin::Face(face),
+        Origin::Edge(edges[(corner + arity - 1) % arity]),
+    ];
+    if arity == 4 {
+        child.rotate_right(corner);
+    }
+    child
+}
+
+/// The faces that share a vertex with any of the `faces`, which come first; each once.
+pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
+    let mut all = faces.to_vec();
+    let mut seen: std::collections::HashSet<u32> = faces.iter().copied().collect();
+    for &face in faces {
+        for &vertex in topology.face(face) {
+            all.extend(
+                topology
+                    .vertex_faces(vertex)
+                    .iter()
+                    .map(|c| c.face)
+                    .filter(|&face| seen.insert(face)),
+            );
+        }
+    }
+    all
+}
+
+/// Refines the given children, each a face and a corner of it, with everything that touches them.
+pub fn refine(parent: &Topology, cells: &[(u32, u32)]) -> Refinement {
+    let mut parents: Vec<u32> = cells.iter().map(|&(face, _)| face).collect();
+    parents.dedup();
+    let chosen: Vec<[Origin; 4]> = cells
+        .iter()
+        .map(|&(face, corner)| child(parent, face, corner))
+        .collect();
+    let touched: std::collections::HashSet<Origin> = chosen.iter().flatten().copied().collect();
+    let mut faces = chosen.clone();
+    for face in with_neighbours(parent, &parents) {
+        for corner in 0..parent.face(face).len() as u32 {
+            let child = child(parent, face, corner);
+            if child.iter().any(|origin| touched.contains(origin))
+                && !cells.contains(&(face, corner))
+            {
+                faces.push(child);
+            }
+        }
+    }
+    let mut step = Step {
+        parent,
+        numbers: HashMap::new(),
+        origins: Vec::new(),
+    };
+    let faces: Vec<[u32; 4]> = faces
+        .iter()
+        .map(|face| face.map(|origin| step.number(origin)))
+        .collect();
+    let sharpness = step
+        .origins
+        .iter()
+        .map(|&origin| step.sharpness(origin))
+        .collect();
+    let topology = Topology::connect(
+        faces.iter().map(|f| &f[..]),
+        sharpness,
+        parent.options(),
+        |a, b| step.edge(a, b),
+    );
+    let masks = step
+        .origins
+        .iter()
+        .map(|&origin| step.mask(origin))
+        .collect();
+    Refinement {
+        topology,
+        masks,
+        cells: chosen.len() as u32,
+    }
+}
+
+/// Numbers the vertices of the next level as they are met.
+struct Step<'a> {
+    parent: &'a Topology,
+    numbers: HashMap<Origin, u32>,
+    origins: Vec<Origin>,
+}
+
+impl Step<'_> {
+    fn number(&mut self, origin: Origin) -> u32 {
+        *self.numbers.entry(origin).or_insert_with(|| {
+            self.origins.push(origin);
+            self.origins.len() as u32 - 1
+        })
+    }
+
+    fn sharpness(&self, origin: Origin) -> f32 {
+        match origin {
+            Origin::Vertex(vertex) => decayed(self.parent.vertex_sharpness(vertex)),
+            _ => 0.0,
+        }
+    }
+
+    fn mask(&self, origin: Origin) -> Mask {
+        match origin {
+            Origin::Face(face) => face_point(self.parent, face),
+            Origin::Edge(edge) => edge_point(self.parent, edge),
+            Origin::Vertex(vertex) => vertex_point(self.parent, vertex),
+        }
+    }
+
+    /// The sharpness of the child edge `a`-`b`, and what it will be at its ends: half a parent edge, or smooth.
+    fn edge(&self, a: u32, b: u32) -> (f32, [f32; 2]) {
+        match (self.origins[a as usize], self.origins[b as usize]) {
+            (Origin::Vertex(vertex), Origin::Edge(edge)) => self.half(edge, vertex),
+            (Origin::Edge(edge), Origin::Vertex(vertex)) => {
+                let (sharpness, [near, far]) = self.half(edge, vertex);
+                (sharpness, [far, near])
+            }
+            _ => (0.0, [0.0; 2]),
+        }
+    }
+
+    /// The half of `edge` that ends in `vertex`: its sharpness, and next that at the vertex and at the edge's middle.
+    fn half(&self, edge: u32, vertex: u32) -> (f32, [f32; 2]) {
+        let method = self.parent.options().creasing;
+        let whole = self.parent.edge(edge);
+        let around = self.parent.vertex_edges(vertex);
+        let halves: Vec<f32> = around
+            .iter()
+            .map(|&e| self.parent.edge(e).next_at(vertex))
+            .collect();
+        let at = around
+            .iter()
+            .position(|&e| e == edge)
+            .expect("the edge ends in this vertex");
+        let near = decayed_around_vertex(method, &halves)[at];
+        let sharpness = whole.next_at(vertex);
+        let far =
+            decayed_around_vertex(method, &[sharpness, whole.next_at(whole.other(vertex))])[0];
+        (sharpness, [near, far])
+    }
+}

@@ -1,9 +1,12 @@
 //! hullform turns a control mesh into plans on the CPU once, and then one patch a face through Vulkan's control and
 //! evaluation shaders every frame.
 
+pub mod abi;
 pub mod error;
 pub mod mesh;
+pub mod method;
 pub mod patch;
+pub mod plan;
 pub mod subdivision;
 
 pub use error::{Error, Place, Result};

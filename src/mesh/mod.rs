@@ -2,6 +2,7 @@
 
 mod builtin;
 mod control_mesh;
+mod model;
 mod obj;
 pub mod sharpness;
 pub mod topology;
@@ -11,4 +12,5 @@ pub use control_mesh::{
     BoundaryInterpolation, ControlMesh, ControlMeshBuilder, Corner, Crease, CreaseMethod,
     FaceVarying, INFINITE_SHARPNESS, SchemeOptions, TriangleSubdivision,
 };
+pub use model::Model;
 pub use obj::{read_obj, read_obj_bytes};

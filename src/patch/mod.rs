@@ -1,4 +1,29 @@
-//! Bases and their derivatives, in one dimension: a patch is the product of two.
+//! Bases and their derivatives, in one dimension: a patch is the product of two. In f64 for the truth, in f32 as twins of the shaders.
 
 pub mod bspline;
 pub mod crease;
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// The numbers that bases are computed in: f32 and f64.
+pub trait Real:
+    Copy
+    + PartialOrd
+    + From<f32>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
+}
+
+impl<T> Real for T where
+    T: Copy
+        + PartialOrd
+        + From<f32>
+        + Add<Output = T>
+        + Sub<Output = T>
+        + Mul<Output = T>
+        + Div<Output = T>
+{
+}

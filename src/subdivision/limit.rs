@@ -387,7 +387,7 @@ impl DartMatrix {
         let n = self.n;
         let (edge, face) = (|i: usize| 1 + i % n, |i: usize| 1 + n + i % n);
         let mut product = vec![0.0; 2 * n + 1];
-        let mut add_face = |i: usize, weight: f64, product: &mut Vec<f64>| {
+        let add_face = |i: usize, weight: f64, product: &mut Vec<f64>| {
             for vertex in [0, edge(i), edge(i + 1), face(i)] {
                 product[vertex] += 0.25 * weight;
             }

@@ -1,0 +1,265 @@
+//! Every constant and struct that host and shaders share, declared once.
+//!
+//! `glsl/abi.glsl` is generated from here ([`glsl`]); a test holds the committed file to it, another holds the members' offsets in the
+//! compiled SPIR-V to those of the Rust structs. All blocks have scalar layout (`VK_EXT_scalar_block_layout`, core in Vulkan 1.2).
+
+use bytemuck::{Pod, Zeroable};
+
+/// A type that both languages have.
+trait Shared {
+    /// The declaration of a member of this type.
+    fn declare(name: &str) -> String;
+}
+
+impl Shared for u32 {
+    fn declare(name: &str) -> String {
+        format!("uint {name}")
+    }
+}
+
+impl Shared for f32 {
+    fn declare(name: &str) -> String {
+        format!("float {name}")
+    }
+}
+
+impl Shared for [f32; 2] {
+    fn declare(name: &str) -> String {
+        format!("vec2 {name}")
+    }
+}
+
+impl Shared for [f32; 3] {
+    fn declare(name: &str) -> String {
+        format!("vec3 {name}")
+    }
+}
+
+impl Shared for [[f32; 4]; 4] {
+    fn declare(name: &str) -> String {
+        format!("mat4 {name}")
+    }
+}
+
+impl<const N: usize> Shared for [u32; N] {
+    fn declare(name: &str) -> String {
+        format!("uint {name}[{N}]")
+    }
+}
+
+/// Declares constants, and how they read in GLSL.
+macro_rules! constants {
+    ($($(#[doc = $doc:literal])* $name:ident = $value:expr;)*) => {
+        $($(#[doc = $doc])* pub const $name: u32 = $value;)*
+
+        fn glsl_constants() -> String {
+            let mut text = String::new();
+            $(
+                $(text += &format!("//{}\n", $doc);)*
+                text += &format!("const uint {} = {}u;\n", stringify!($name), $name);
+            )*
+            text
+        }
+    };
+}
+
+/// Declares structs, how they read in GLSL, and where their members lie.
+macro_rules! structs {
+    ($($(#[doc = $doc:literal])* $name:ident { $($(#[doc = $member_doc:literal])* $member:ident: $kind:ty,)* })*) => {
+        $(
+            $(#[doc = $doc])*
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+            pub struct $name { $($(#[doc = $member_doc])* pub $member: $kind,)* }
+        )*
+
+        fn glsl_structs() -> String {
+            let mut text = String::new();
+            $(
+                text += "\n";
+                $(text += &format!("//{}\n", $doc);)*
+                text += &format!("struct {} {{\n", stringify!($name));
+                $(
+                    $(text += &format!("    //{}\n", $member_doc);)*
+                    text += &format!("    {};\n", <$kind as Shared>::declare(stringify!($member)));
+                )*
+                text += "};\n";
+            )*
+            text
+        }
+
+        /// Name, size in bytes, and members with their offsets, of every shared struct.
+        pub const LAYOUTS: &[(&str, usize, &[(&str, usize)])] = &[
+            $((stringify!($name), size_of::<$name>(), &[
+                $((stringify!($member), std::mem::offset_of!($name, $member)),)*
+            ]),)*
+        ];
+    };
+}
+
+constants! {
+    /// Set 0, binding: control vertices, three floats each, relative to the model's centre.
+    BINDING_POSITIONS = 0;
+    /// Set 0, binding: `Patch` records.
+    BINDING_PATCHES = 1;
+    /// Set 0, binding: the numbers of the control vertices of each patch.
+    BINDING_CONTROLS = 2;
+    /// Set 0, binding: texture coordinates, four a patch.
+    BINDING_TEXTURE = 3;
+    /// Set 0, binding: the scratch ring, one vec4 a point.
+    BINDING_SCRATCH = 4;
+    /// Set 0, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
+    BINDING_COUNTERS = 5;
+    /// Set 0, binding: where each patch's slot begins, when the host allocates.
+    BINDING_SLOTS = 6;
+    /// Set 0, binding: the number of captured vertices, then the `Captured` records.
+    BINDING_CAPTURE = 7;
+    /// Set 0, binding: the first of a method's own tables.
+    BINDING_TABLES = 8;
+    /// How many tables a method may have of its own.
+    TABLES = 4;
+
+    /// Invocations of a control shader that runs stencils; also its greatest number of control points.
+    CONTROL_INVOCATIONS = 32;
+    /// The deepest level of a plan.
+    HIGHEST_LEVEL = 10;
+    /// Stencils in front of a plan that belong to its corners: position and two tangents each.
+    CORNER_STENCILS = 12;
+
+    /// Node kind: has four children.
+    NODE_INTERNAL = 0;
+    /// Node kind: a B-spline.
+    NODE_REGULAR = 1;
+    /// Node kind: a B-spline with mirrored control points.
+    NODE_BOUNDARY = 2;
+    /// Node kind: a B-spline with one semi-sharp crease.
+    NODE_CREASE = 3;
+    /// Node kind: levels around an extraordinary vertex.
+    NODE_TERMINAL = 4;
+    /// Node kind: an extraordinary vertex.
+    NODE_EXTRAORDINARY = 5;
+    /// Points in a level of a terminal node.
+    TERMINAL_POINTS = 25;
+
+    /// Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
+    PATCH_EVEN_EDGE = 1;
+    /// Patch flag: part of an n-gon, with half the tess level of a quad.
+    PATCH_HALF = 16;
+    /// Patch flag: where the corner of the ptex face that is corner 0 of the patch stands; two bits.
+    PATCH_TURN_SHIFT = 5;
+
+    /// Frame flag: spacing is fractional-even, else equal.
+    FRAME_FRACTIONAL_EVEN = 1;
+    /// Frame flag: slots come from the host, else from the batch's counter.
+    FRAME_HOST_SLOTS = 2;
+    /// Frame flag: the evaluation shader records what it produces.
+    FRAME_CAPTURE = 4;
+
+    /// Counter: patches that found no room in the ring and were not drawn.
+    COUNTER_OVERFLOWS = 0;
+    /// Counter: points computed, over all batches.
+    COUNTER_POINTS = 1;
+    /// Counter: the first batch's allocation.
+    COUNTER_BATCHES = 2;
+
+    /// Shading: lit.
+    SHADING_LIT = 0;
+    /// Shading: the normal as a colour.
+    SHADING_NORMAL = 1;
+    /// Shading: a colour a patch.
+    SHADING_PATCH = 2;
+    /// Shading: a colour a node kind, as in the figures of Brainerd et al. 2016.
+    SHADING_NODE = 3;
+    /// Shading: the valence of the nearest corner.
+    SHADING_VALENCE = 4;
+    /// Shading: one dark colour, for lines.
+    SHADING_LINES = 5;
+}
+
+structs! {
+    /// A patch: a quad, or the part of an n-gon at one of its corners.
+    Patch {
+        /// Its ptex face.
+        ptex: u32,
+        /// `PATCH_...` flags.
+        flags: u32,
+        /// Where its control vertices begin.
+        controls: u32,
+        /// Its plan, or whatever the method keeps for it.
+        plan: u32,
+        /// The valences of its four corners, a byte each, 255 for more.
+        valences: u32,
+    }
+
+    /// A plan: where its parts begin, and how many stencils each level needs.
+    PlanHeader {
+        /// Vertices of the 1-ring.
+        ring_size: u32,
+        /// Where its weights begin, `ring_size` a stencil.
+        weights: u32,
+        /// Its root.
+        root: u32,
+        /// Its deepest level.
+        max_level: u32,
+        /// The number of stencils needed at level 0..=10; beyond the deepest level as there.
+        counts: [u32; 11],
+    }
+
+    /// A node of a quadtree.
+    Node {
+        /// `NODE_...`, then the corner or edge << 4, then the number of levels << 8.
+        kind: u32,
+        /// Internal: the first child. Otherwise where its points begin, counted in 16-bit halves.
+        points: u32,
+        /// What is left of the sharpness of a crease.
+        sharpness: f32,
+    }
+
+    /// What changes from draw to draw; push constants.
+    Frame {
+        /// From model space, relative to the model's centre, to clip space.
+        view_projection: [[f32; 4]; 4],
+        /// The eye in model space.
+        eye: [f32; 3],
+        /// `SHADING_...`
+        shading: u32,
+        /// The tess level of a quad, 1..=64.
+        level: f32,
+        /// `FRAME_...` flags.
+        flags: u32,
+        /// The first patch of the draw.
+        first_patch: u32,
+        /// The patch behind the last of the draw.
+        end_patch: u32,
+        /// Patches an instance.
+        patches_per_instance: u32,
+        /// Points that the ring holds.
+        ring_points: u32,
+        /// The batch's counter.
+        counter: u32,
+        /// Vertices that the capture holds.
+        capture_vertices: u32,
+    }
+
+    /// A vertex as an evaluation shader produced it.
+    Captured {
+        /// The patch.
+        patch_number: u32,
+        /// Where in the patch's own domain.
+        uv: [f32; 2],
+        /// Position relative to the model's centre.
+        position: [f32; 3],
+        /// Unit normal.
+        normal: [f32; 3],
+    }
+}
+
+/// The text of `glsl/abi.glsl`.
+pub fn glsl() -> String {
+    format!(
+        "// Generated from src/abi.rs; do not edit. HULLFORM_UPDATE=1 cargo test --test abi writes it anew.\n\
+         #ifndef ABI_GLSL\n#define ABI_GLSL\n\n{}{}\n#endif\n",
+        glsl_constants(),
+        glsl_structs()
+    )
+}

@@ -1,0 +1,175 @@
+//! Surface methods: how each prepares a model for the GPU, and how its evaluation reads as a CPU twin.
+//!
+//! A method is one file here, one in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the rows;
+//! nothing else names a method.
+
+mod flat;
+mod patches;
+mod quadtree;
+
+use glam::{Vec2, Vec3};
+
+use crate::abi;
+use crate::error::{Error, Result};
+use crate::mesh::Model;
+use crate::plan::PlanOptions;
+
+pub use quadtree::PlanStatistics;
+
+/// The shape of a method's patches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// Unit square.
+    Quads,
+    /// Triangle.
+    Triangles,
+}
+
+/// What a method promises.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contract {
+    /// The greatest distance from the Catmull-Clark limit over the diagonal of the bounding box; None when it is another surface.
+    pub limit: Option<f64>,
+    /// The greatest angle between its normals and the limit's, in degrees.
+    pub normals: Option<f64>,
+    /// Whether it passes through the control vertices.
+    pub interpolates: bool,
+    /// Whether both sides of every edge get the same bits.
+    pub watertight: bool,
+}
+
+/// A row of the table of methods.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub summary: &'static str,
+    /// Where it is described.
+    pub paper: &'static str,
+    /// The shape of its patches.
+    pub domain: Domain,
+    /// What it promises.
+    pub contract: Contract,
+    /// Prepares a model.
+    pub prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
+}
+
+/// Every method.
+pub const METHODS: &[Method] = &[quadtree::METHOD, flat::METHOD];
+
+/// The method of a name.
+///
+/// # Errors
+/// [`Error::Option`] with the names there are.
+pub fn method(name: &str) -> Result<&'static Method> {
+    METHODS
+        .iter()
+        .find(|method| method.name == name)
+        .ok_or_else(|| Error::Option {
+            option: "--method",
+            problem: format!("there is no method '{name}'"),
+            remedy: format!(
+                "choose one of {}",
+                METHODS
+                    .iter()
+                    .map(|method| method.name)
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
+        })
+}
+
+/// What a method made of a model: passes to draw, independent of one another.
+#[derive(Clone, Debug, Default)]
+pub struct Prepared {
+    /// The passes.
+    pub passes: Vec<Pass>,
+    /// What is known about the plans, when the method has any.
+    pub plans: Option<PlanStatistics>,
+}
+
+/// Patches that are drawn with one set of shaders.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// The file in `glsl/method` that evaluates them.
+    pub shader: &'static str,
+    /// Control points a patch, 1..=32, that go through the vertex shader.
+    pub control_points: u32,
+    /// The patches.
+    pub patches: Vec<abi::Patch>,
+    /// The numbers of control vertices that the patches point into.
+    pub controls: Vec<u32>,
+    /// Texture coordinates of each patch's four corners.
+    pub texture: Vec<[[f32; 2]; 4]>,
+    /// The method's own tables, as words, from `BINDING_TABLES` on.
+    pub tables: Vec<Vec<u32>>,
+    /// The points that a patch needs in the scratch ring at levels 0..=10, by its plan; empty when there is no ring.
+    pub scratch_points: Vec<[u32; abi::HIGHEST_LEVEL as usize + 1]>,
+    /// The deepest level that is evaluated exactly; tess factors stay at or below 2 to this.
+    pub max_level: u32,
+    /// What the evaluation shader computes, on the CPU.
+    pub twin: Twin,
+}
+
+/// A point of a patch as the evaluation shader computes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Position relative to the model's centre.
+    pub position: Vec3,
+    /// Derivative by u.
+    pub du: Vec3,
+    /// Derivative by v.
+    pub dv: Vec3,
+}
+
+impl Surface {
+    /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel.
+    pub fn normal(&self) -> Vec3 {
+        let normal = self
+            .du
+            .normalize_or_zero()
+            .cross(self.dv.normalize_or_zero());
+        normal.normalize_or_zero()
+    }
+}
+
+/// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices, patch, and where in its domain.
+pub type Twin = fn(&Pass, &[Vec3], usize, Vec2) -> Surface;
+
+impl Pass {
+    /// Evaluates patch `patch` at `uv` of its own domain.
+    pub fn evaluate(&self, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
+        (self.twin)(self, positions, patch, uv)
+    }
+
+    /// The points that patch `patch` needs in the ring at `level`.
+    pub fn points(&self, patch: usize, level: u32) -> u32 {
+        let plan = self.patches[patch].plan as usize;
+        self.scratch_points
+            .get(plan)
+            .map_or(0, |points| points[level as usize])
+    }
+}
+
+/// Where (u, v) of a patch's own domain lies in its ptex face: the domain may be turned by quarters.
+pub fn to_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
+    let [u, v] = uv;
+    match patch.flags >> abi::PATCH_TURN_SHIFT & 3 {
+        0 => [u, v],
+        1 => [1.0 - v, u],
+        2 => [1.0 - u, 1.0 - v],
+        _ => [v, 1.0 - u],
+    }
+}
+
+/// Where (u, v) of a ptex face lies in the patch's own domain.
+pub fn from_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
+    let [u, v] = uv;
+    match patch.flags >> abi::PATCH_TURN_SHIFT & 3 {
+        0 => [u, v],
+        1 => [v, 1.0 - u],
+        2 => [1.0 - u, 1.0 - v],
+        _ => [1.0 - v, u],
+    }
+}

@@ -1,0 +1,96 @@
+//! What every method's patches have in common: one a quad, one a corner of an n-gon, with their flags, valences and texture coordinates.
+
+use crate::abi;
+use crate::mesh::Model;
+use crate::mesh::topology::Topology;
+
+/// A patch to be: a quad as a whole, or the part of an n-gon at a corner.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The face.
+    pub face: u32,
+    /// The n-gon's corner; 0 for quads.
+    pub corner: u32,
+    /// Its ptex number.
+    pub ptex: u32,
+}
+
+/// The parts of every face that is no hole, in ptex order.
+pub fn parts(model: &Model) -> Vec<Part> {
+    let topology = model.topology();
+    let mut parts = Vec::new();
+    let mut ptex = 0;
+    for face in 0..topology.face_count() as u32 {
+        let arity = topology.face(face).len() as u32;
+        let count = if arity == 4 { 1 } else { arity };
+        if !topology.is_hole(face) {
+            parts.extend((0..count).map(|corner| Part {
+                face,
+                corner,
+                ptex: ptex + corner,
+            }));
+        }
+        ptex += count;
+    }
+    parts
+}
+
+/// The common fields of the patch of a part whose corner 0 is the quad's corner `turn`.
+pub fn patch(topology: &Topology, part: Part, turn: u32) -> abi::Patch {
+    let vertices = topology.face(part.face);
+    let (flags, valences) = if vertices.len() == 4 {
+        let corners: [u32; 4] = std::array::from_fn(|i| (turn + i as u32) % 4);
+        let edge = |corner: u32| topology.face_edges(part.face)[corner as usize];
+        let even = (0..4).filter(|&i| touches_n_gon(topology, edge(corners[i])));
+        let even: u32 = even.map(|i| abi::PATCH_EVEN_EDGE << i).sum();
+        let valences = corners.map(|corner| topology.vertex_edges(vertices[corner as usize]).len());
+        (even | turn << abi::PATCH_TURN_SHIFT, valences)
+    } else {
+        let corner = topology.vertex_edges(vertices[part.corner as usize]).len();
+        (abi::PATCH_HALF, [corner, 4, vertices.len(), 4])
+    };
+    let bytes = valences.map(|valence| valence.min(255) as u8);
+    abi::Patch {
+        ptex: part.ptex,
+        flags,
+        valences: u32::from_le_bytes(bytes),
+        ..Default::default()
+    }
+}
+
+fn touches_n_gon(topology: &Topology, edge: u32) -> bool {
+    topology
+        .edge_faces(edge)
+        .iter()
+        .any(|&face| topology.face(face).len() != 4 && !topology.is_hole(face))
+}
+
+/// The texture coordinates at the corners of a part whose corner 0 is the quad's corner `turn`; without any, those of the ptex face.
+pub fn texture(model: &Model, part: Part, turn: u32) -> [[f32; 2]; 4] {
+    let own = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mesh = model.mesh();
+    let corners = match mesh.texture() {
+        None => own,
+        Some(texture) => {
+            let indices = &texture.indices[mesh.corner_range(part.face as usize)];
+            let values: Vec<glam::DVec2> = indices
+                .iter()
+                .map(|&index| texture.values[index as usize])
+                .collect();
+            let (n, i) = (values.len(), part.corner as usize);
+            let middle = |other: usize| (values[i] + values[other % n]) / 2.0;
+            let corners = if n == 4 {
+                [values[0], values[1], values[2], values[3]]
+            } else {
+                [
+                    values[i],
+                    middle(i + 1),
+                    values.iter().sum::<glam::DVec2>() / n as f64,
+                    middle(i + n - 1),
+                ]
+            };
+            corners.map(|corner| corner.as_vec2().to_array())
+        }
+    };
+    std::array::from_fn(|i| corners[(turn as usize + i) % 4])
+}

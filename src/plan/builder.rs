@@ -1,0 +1,376 @@
+//! From a configuration to a plan: adaptive refinement, level by level, with every vertex kept as a row of weights over the 1-ring.
+
+use std::collections::HashMap;
+
+use crate::error::{Error, Result};
+use crate::mesh::topology::Topology;
+use crate::plan::configuration::Configuration;
+use crate::plan::span::{Span, required_level};
+use crate::plan::tree::{Node, Tree, child_of_corner};
+use crate::subdivision::{
+    Blend, BsplinePatch, ControlPoint, Mask, bspline_patch, limit_stencil, refine,
+};
+
+/// How plans are built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanOptions {
+    /// The deepest level, 1..=10. Tess factors up to 2^max_level are evaluated exactly.
+    pub max_level: u32,
+    /// Whether single semi-sharp creases are evaluated directly (Brainerd et al. 2016, section 6.2) or refined away.
+    pub direct_creases: bool,
+}
+
+impl Default for PlanOptions {
+    /// Level 6 for Vulkan's greatest tess level of 64, creases evaluated directly.
+    fn default() -> PlanOptions {
+        PlanOptions {
+            max_level: 6,
+            direct_creases: true,
+        }
+    }
+}
+
+impl PlanOptions {
+    /// The highest `max_level`.
+    pub const HIGHEST_LEVEL: u32 = 10;
+
+    /// Checks the range of `max_level`.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when it is not in 1..=10.
+    pub fn check(self) -> Result<PlanOptions> {
+        if (1..=Self::HIGHEST_LEVEL).contains(&self.max_level) {
+            return Ok(self);
+        }
+        Err(Error::Option {
+            option: "--max-level",
+            problem: format!("{} is out of range", self.max_level),
+            remedy: "give a level of 1 to 10; 6 serves every tess level of Vulkan".into(),
+        })
+    }
+}
+
+/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stencil {
+    /// One weight a vertex of the ring.
+    pub weights: Vec<f64>,
+    /// The lowest level that needs it, 0..=max_level.
+    pub level: u32,
+}
+
+/// The plan of a configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The number of vertices in the 1-ring.
+    pub ring_size: usize,
+    /// The deepest level.
+    pub max_level: u32,
+    /// The quadtree; node 0 is its root.
+    pub nodes: Vec<Node>,
+    /// Sorted by level. The first twelve are, for each corner, the limit position and the two tangents there.
+    pub stencils: Vec<Stencil>,
+}
+
+impl Plan {
+    /// The number of stencils in front that belong to the corners: position and two tangents each.
+    pub const CORNER_STENCILS: usize = 12;
+
+    /// Builds the plan of a configuration.
+    pub fn build(configuration: &Configuration, options: PlanOptions) -> Plan {
+        let mut level = Level::base(configuration);
+        let ring_size = level.ring_size();
+        let mut builder = Builder {
+            options,
+            rows: Vec::new(),
+            numbers: HashMap::new(),
+        };
+        for corner in 0..4 {
+            builder.rows.extend(level.limit(0, corner));
+        }
+        let tree = builder.grow(&mut level, ring_size).fold();
+        let mut levels = vec![0; builder.rows.len()];
+        levels[Plan::CORNER_STENCILS..].fill(options.max_level);
+        require(
+            &tree,
+            Span::WHOLE,
+            Span::WHOLE,
+            options.max_level,
+            &mut levels,
+        );
+        sorted(
+            tree.flatten(),
+            builder.rows,
+            &levels,
+            ring_size,
+            options.max_level,
+        )
+    }
+
+    /// How many stencils each level 0..=max_level needs; they are the first ones.
+    pub fn level_counts(&self) -> Vec<usize> {
+        (0..=self.max_level)
+            .map(|level| {
+                self.stencils
+                    .partition_point(|stencil| stencil.level <= level)
+            })
+            .collect()
+    }
+}
+
+/// A refinement level: some cells in their surroundings, each vertex a row of weights.
+struct Level {
+    topology: Topology,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Level {
+    /// The level at which the plan begins: the quad itself, or the n-gon's part at its corner 0.
+    fn base(configuration: &Configuration) -> Level {
+        let topology = configuration.topology();
+        let count = topology.vertex_count();
+        let unit = |i| (0..count).map(|j| f64::from(u8::from(i == j))).collect();
+        let base = Level {
+            rows: (0..count).map(unit).collect(),
+            topology,
+        };
+        if base.topology.face(0).len() == 4 {
+            base
+        } else {
+            base.refined(&[(0, 0)])
+        }
+    }
+
+    fn ring_size(&self) -> usize {
+        self.rows[0].len()
+    }
+
+    fn refined(&self, cells: &[(u32, u32)]) -> Level {
+        let refined = refine(&self.topology, cells);
+        let rows = refined.masks.iter().map(|mask| self.row(mask)).collect();
+        Level {
+            topology: refined.topology,
+            rows,
+        }
+    }
+
+    fn row(&self, mask: &Mask) -> Vec<f64> {
+        Vec::blend(mask, &self.rows)
+    }
+
+    /// Limit position and tangents at a corner of a cell; refined on until no semi-sharp feature is left there.
+    fn limit(&self, cell: u32, corner: u32) -> [Vec<f64>; 3] {
+        match limit_stencil(&self.topology, cell, corner) {
+            Some(limit) => [
+                self.row(&limit.position),
+                self.row(&limit.du),
+                self.row(&limit.dv),
+            ],
+            None => {
+                let [position, du, dv] = self.refined(&[(cell, corner)]).limit(0, corner);
+                let doubled = |row: Vec<f64>| row.into_iter().map(|weight| 2.0 * weight).collect();
+                [position, doubled(du), doubled(dv)]
+            }
+        }
+    }
+}
+
+/// A cell that waits to be turned into a leaf or four cells.
+#[derive(Clone, Copy)]
+struct Cell {
+    /// The corner of the face that it touches, if any.
+    corner: Option<u32>,
+}
+
+/// What became of a cell at its level.
+enum Grown {
+    Leaf(Node),
+    /// Four cells of the next level, from this number on.
+    Children(usize),
+}
+
+struct Builder {
+    options: PlanOptions,
+    rows: Vec<Vec<f64>>,
+    numbers: HashMap<(u32, ControlPoint), u32>,
+}
+
+/// Semi-sharp features are gone after ten levels; a cell inside a face is a B-spline then.
+const DEEPEST: u32 = 11;
+
+impl Builder {
+    /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
+    fn grow(&mut self, base: &mut Level, ring_size: usize) -> Tree {
+        debug_assert_eq!(base.ring_size(), ring_size);
+        let mut grown: Vec<Vec<Grown>> = Vec::new();
+        let mut cells = vec![Cell { corner: None }];
+        let mut level: Option<Level> = None;
+        for depth in 0.. {
+            let here = level.as_ref().unwrap_or(base);
+            let mut next = Vec::new();
+            let mut parents = Vec::new();
+            let row = cells.iter().enumerate().map(|(number, &cell)| {
+                match self.leaf(here, number as u32, cell, depth) {
+                    Some(node) => Grown::Leaf(node),
+                    None => {
+                        let first = next.len();
+                        next.extend((0..4).map(|corner| Cell {
+                            corner: (depth == 0 || cell.corner == Some(corner)).then_some(corner),
+                        }));
+                        parents.extend((0..4).map(|corner| (number as u32, corner)));
+                        Grown::Children(first)
+                    }
+                }
+            });
+            let row: Vec<Grown> = row.collect();
+            grown.push(row);
+            if next.is_empty() {
+                break;
+            }
+            level = Some(here.refined(&parents));
+            cells = next;
+        }
+        join(&grown, 0, 0)
+    }
+
+    /// The cell as a leaf, or None when it must be refined.
+    fn leaf(&mut self, level: &Level, number: u32, cell: Cell, depth: u32) -> Option<Node> {
+        let last = depth >= self.options.max_level;
+        let patch = bspline_patch(&level.topology, number);
+        match (patch, cell.corner) {
+            (Some(patch), _) if patch.crease.is_none() => {
+                let mirrored = patch.mirrored;
+                Some(Node::Regular {
+                    points: self.points(level, depth, &patch),
+                    mirrored,
+                })
+            }
+            (Some(patch), _) if self.options.direct_creases || last => {
+                let (edge, sharpness) = patch.crease?;
+                Some(Node::Crease {
+                    points: self.points(level, depth, &patch),
+                    edge,
+                    sharpness,
+                })
+            }
+            (_, Some(corner)) if last => Some(Node::Extraordinary { corner }),
+            _ => {
+                assert!(
+                    depth < DEEPEST,
+                    "a cell inside a face is a B-spline once no semi-sharp crease is left"
+                );
+                None
+            }
+        }
+    }
+
+    fn points(&mut self, level: &Level, depth: u32, patch: &BsplinePatch) -> [u32; 16] {
+        patch.points.map(|point| {
+            *self.numbers.entry((depth, point)).or_insert_with(|| {
+                self.rows.push(level.row(&point.mask()));
+                self.rows.len() as u32 - 1
+            })
+        })
+    }
+}
+
+/// The tree under cell `number` of level `depth`.
+fn join(grown: &[Vec<Grown>], depth: usize, number: usize) -> Tree {
+    match &grown[depth][number] {
+        Grown::Leaf(node) => Tree::Leaf(node.clone()),
+        Grown::Children(first) => {
+            let mut children: [Option<Tree>; 4] = Default::default();
+            for corner in 0..4 {
+                children[child_of_corner(corner as u32)] =
+                    Some(join(grown, depth + 1, first + corner));
+            }
+            Tree::Inner(Box::new(
+                children.map(|child| child.expect("four corners make four children")),
+            ))
+        }
+    }
+}
+
+/// Lowers `levels` of every stencil to the first level at which a tess coordinate falls into a cell that uses it.
+fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
+    let mut lower = |points: &[u32], u: Span, v: Span| {
+        let level = required_level(u, v, deepest);
+        for &point in points {
+            let known = &mut levels[point as usize];
+            *known = level.min(*known);
+        }
+    };
+    match tree {
+        Tree::Inner(children) => {
+            let (us, vs) = (
+                u.split(u.interior_half_is_upper()),
+                v.split(v.interior_half_is_upper()),
+            );
+            for (number, child) in children.iter().enumerate() {
+                require(child, us[number % 2], vs[number / 2], deepest, levels);
+            }
+        }
+        Tree::Leaf(Node::Regular { points, .. } | Node::Crease { points, .. }) => {
+            lower(points, u, v)
+        }
+        Tree::Leaf(Node::Terminal {
+            corner,
+            levels: grids,
+        }) => {
+            let end = child_of_corner(*corner);
+            let (mut u, mut v) = (u, v);
+            for grid in grids {
+                let (us, vs) = (u.split(end % 2 == 0), v.split(end / 2 == 0));
+                for number in (0..4).filter(|&number| number != end) {
+                    let points: Vec<u32> = (0..16)
+                        .map(|i| grid[(i % 4 + number % 2) + 5 * (i / 4 + number / 2)])
+                        .collect();
+                    lower(&points, us[number % 2], vs[number / 2]);
+                }
+                (u, v) = (us[end % 2], vs[end / 2]);
+            }
+        }
+        Tree::Leaf(Node::Extraordinary { .. } | Node::Internal { .. }) => {}
+    }
+}
+
+/// Sorts the stencils by level and renumbers the points of the nodes.
+fn sorted(
+    mut nodes: Vec<Node>,
+    rows: Vec<Vec<f64>>,
+    levels: &[u32],
+    ring_size: usize,
+    max_level: u32,
+) -> Plan {
+    let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+    order.sort_by_key(|&point| levels[point as usize]);
+    let mut place = vec![0; rows.len()];
+    for (new, &old) in order.iter().enumerate() {
+        place[old as usize] = new as u32;
+    }
+    let renumber = |points: &mut [u32]| {
+        points
+            .iter_mut()
+            .for_each(|point| *point = place[*point as usize])
+    };
+    for node in &mut nodes {
+        match node {
+            Node::Regular { points, .. } | Node::Crease { points, .. } => renumber(points),
+            Node::Terminal { levels, .. } => levels.iter_mut().for_each(|grid| renumber(grid)),
+            Node::Internal { .. } | Node::Extraordinary { .. } => {}
+        }
+    }
+    let mut rows: Vec<Option<Vec<f64>>> = rows.into_iter().map(Some).collect();
+    let stencils = order.iter().map(|&old| Stencil {
+        weights: rows[old as usize]
+            .take()
+            .expect("an order names each point once"),
+        level: levels[old as usize],
+    });
+    Plan {
+        ring_size,
+        max_level,
+        nodes,
+        stencils: stencils.collect(),
+    }
+}

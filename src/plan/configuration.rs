@@ -1,0 +1,222 @@
+//! The configuration of a face: all that shapes its limit but the positions (Brainerd et al. 2016, section 4.3).
+//!
+//! Faces of equal configuration share a plan. A configuration lists the faces of the 1-ring in the order of a walk around the face's
+//! corners, each with its vertices numbered as they are first met; the sharpness of the corners; and that of the edges at the corners.
+//! Nothing farther out has a say (see `subdivision::refine`), except that under Chaikin's rule the next sharpness at an edge's far end
+//! does: it is part of what an edge brings along.
+
+use std::collections::HashMap;
+
+use smallvec::SmallVec;
+
+use crate::mesh::sharpness::is_sharp;
+use crate::mesh::topology::Topology;
+use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
+
+/// What a plan depends on. Equal configurations are equal words; the words hold the whole local mesh, so no two differ by accident.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Configuration {
+    words: Vec<u32>,
+}
+
+/// A face's surroundings in canonical order.
+#[derive(Clone, Debug)]
+pub struct Ring {
+    /// The vertices of the 1-ring, by their numbers in the mesh, in the order in which the configuration numbers them.
+    pub vertices: Vec<u32>,
+    /// The configuration.
+    pub configuration: Configuration,
+    /// The corner of the face at which the walk began: the plan's corner 0.
+    pub start: u32,
+}
+
+impl Ring {
+    /// The ring of a quad, beginning at the corner whose configuration is the least, so that turned faces find the same plan.
+    pub fn of_quad(topology: &Topology, face: u32) -> Ring {
+        let rings = (0..4).map(|start| Ring::from_corner(topology, face, start));
+        rings
+            .min_by(|a, b| a.configuration.cmp(&b.configuration))
+            .expect("there are four")
+    }
+
+    /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner.
+    pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Ring {
+        let mut walk = Walk {
+            topology,
+            numbers: HashMap::new(),
+            vertices: Vec::new(),
+            words: Vec::new(),
+        };
+        walk.options(topology.options());
+        let faces = surrounding_faces(topology, face, start);
+        walk.words.push(faces.len() as u32);
+        for &(face, start) in &faces {
+            walk.face(face, start);
+        }
+        let arity = topology.face(face).len();
+        for corner in 0..arity {
+            walk.words
+                .push(topology.vertex_sharpness(walk.vertices[corner]).to_bits());
+        }
+        walk.edges(&faces, arity);
+        Ring {
+            vertices: walk.vertices,
+            configuration: Configuration { words: walk.words },
+            start,
+        }
+    }
+}
+
+/// Every face that touches `face`, which comes first: around each corner in turn, counter-clockwise and then, where a boundary stopped the
+/// walk, clockwise; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
+fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> Vec<(u32, u32)> {
+    let arity = topology.face(face).len() as u32;
+    let mut found = vec![(face, start)];
+    let mut add = |next: u32, vertex: u32| {
+        if found.iter().all(|&(known, _)| known != next) {
+            let corner = topology
+                .face(next)
+                .iter()
+                .position(|&v| v == vertex)
+                .expect("the walk stays at the vertex");
+            found.push((next, corner as u32));
+        }
+    };
+    for corner in (0..arity).map(|i| (start + i) % arity) {
+        let vertex = topology.face(face)[corner as usize];
+        let edges = topology.face_edges(face);
+        for edge in [
+            edges[((corner + arity - 1) % arity) as usize],
+            edges[corner as usize],
+        ] {
+            topology
+                .walk(vertex, face, edge)
+                .for_each(|(next, _)| add(next, vertex));
+        }
+        topology
+            .vertex_faces(vertex)
+            .iter()
+            .for_each(|corner| add(corner.face, vertex));
+    }
+    found
+}
+
+/// Writes down a ring and numbers its vertices on the way.
+struct Walk<'a> {
+    topology: &'a Topology,
+    numbers: HashMap<u32, u32>,
+    vertices: Vec<u32>,
+    words: Vec<u32>,
+}
+
+impl Walk<'_> {
+    fn options(&mut self, options: SchemeOptions) {
+        let chaikin = u32::from(options.creasing == CreaseMethod::Chaikin);
+        let smooth = u32::from(options.triangles == TriangleSubdivision::Smooth);
+        self.words.push(chaikin | smooth << 1);
+    }
+
+    fn number(&mut self, vertex: u32) -> u32 {
+        *self.numbers.entry(vertex).or_insert_with(|| {
+            self.vertices.push(vertex);
+            self.vertices.len() as u32 - 1
+        })
+    }
+
+    fn face(&mut self, face: u32, start: u32) {
+        let vertices = self.topology.face(face);
+        self.words.push(vertices.len() as u32);
+        for i in 0..vertices.len() {
+            let number = self.number(vertices[(start as usize + i) % vertices.len()]);
+            self.words.push(number);
+        }
+    }
+
+    /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
+    fn edges(&mut self, faces: &[(u32, u32)], corners: usize) {
+        let mut seen: SmallVec<[u32; 8]> = SmallVec::new();
+        for &(face, start) in faces {
+            let edges = self.topology.face_edges(face);
+            for &number in (0..edges.len()).map(|i| &edges[(start as usize + i) % edges.len()]) {
+                let edge = self.topology.edge(number);
+                let [a, b] = edge.vertices.map(|vertex| self.numbers[&vertex]);
+                if is_sharp(edge.sharpness)
+                    && (a.min(b) as usize) < corners
+                    && !seen.contains(&number)
+                {
+                    seen.push(number);
+                    let ends = if a < b { [a, b] } else { [b, a] };
+                    let next = if a < b {
+                        edge.next
+                    } else {
+                        [edge.next[1], edge.next[0]]
+                    };
+                    self.words.extend(ends);
+                    self.words
+                        .extend([edge.sharpness, next[0], next[1]].map(f32::to_bits));
+                }
+            }
+        }
+    }
+}
+
+impl Configuration {
+    /// The local mesh that the words tell: face 0 is the face itself, vertices are numbered as in [`Ring::vertices`].
+    pub fn topology(&self) -> Topology {
+        let mut words = self.words.iter().copied();
+        let mut word = || {
+            words
+                .next()
+                .expect("a configuration is written as it is read")
+        };
+        let flags = word();
+        let options = SchemeOptions {
+            creasing: if flags & 1 != 0 {
+                CreaseMethod::Chaikin
+            } else {
+                CreaseMethod::Uniform
+            },
+            triangles: if flags & 2 != 0 {
+                TriangleSubdivision::Smooth
+            } else {
+                TriangleSubdivision::CatmullClark
+            },
+            ..SchemeOptions::default()
+        };
+        let faces: Vec<Vec<u32>> = (0..word())
+            .map(|_| (0..word()).map(|_| word()).collect())
+            .collect();
+        let vertices = faces.iter().flatten().max().expect("a face has vertices") + 1;
+        let mut sharpness = vec![0.0; vertices as usize];
+        for corner in 0..faces[0].len() {
+            sharpness[corner] = f32::from_bits(word());
+        }
+        let rest: Vec<u32> = words.collect();
+        let edges: HashMap<[u32; 2], [f32; 3]> = rest
+            .chunks_exact(5)
+            .map(|edge| {
+                (
+                    [edge[0], edge[1]],
+                    [edge[2], edge[3], edge[4]].map(f32::from_bits),
+                )
+            })
+            .collect();
+        Topology::connect(
+            faces.iter().map(|face| &face[..]),
+            sharpness,
+            options,
+            |a, b| {
+                let [sharpness, near, far] = edges
+                    .get(&[a.min(b), a.max(b)])
+                    .copied()
+                    .unwrap_or_default();
+                (sharpness, if a < b { [near, far] } else { [far, near] })
+            },
+        )
+    }
+
+    /// The words, for storage.
+    pub fn words(&self) -> &[u32] {
+        &self.words
+    }
+}

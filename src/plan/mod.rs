@@ -1,0 +1,16 @@
+//! Subdivision plans (Brainerd et al. 2016, sections 4 and 7.2): what a face needs to know about its limit, apart from positions.
+
+mod builder;
+mod catalogue;
+mod configuration;
+mod packing;
+mod span;
+mod tree;
+mod walk;
+
+pub use builder::{Plan, PlanOptions, Stencil};
+pub use catalogue::Catalogue;
+pub use configuration::{Configuration, Ring};
+pub use packing::{PackedPlans, Plans};
+pub use tree::{Node, NodeKind};
+pub use walk::{Leaf, walk};

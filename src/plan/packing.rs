@@ -1,0 +1,133 @@
+//! Plans as the bytes that the shaders read.
+
+use crate::abi;
+use crate::plan::builder::Plan;
+use crate::plan::tree::{Node, NodeKind};
+
+/// Plans packed one after another.
+#[derive(Clone, Debug, Default)]
+pub struct PackedPlans {
+    /// One a plan.
+    pub headers: Vec<abi::PlanHeader>,
+    /// The quadtrees' nodes.
+    pub nodes: Vec<abi::Node>,
+    /// The nodes' points: numbers of stencils, two 16-bit halves a word, the lower first.
+    pub points: Vec<u32>,
+    /// The stencils' weights.
+    pub weights: Vec<f32>,
+}
+
+impl PackedPlans {
+    /// Appends a plan.
+    ///
+    /// # Panics
+    /// When the plan has more than 65,536 stencils. Only refining long creases of sharpness 9 away could come near.
+    pub fn push(&mut self, plan: &Plan) {
+        assert!(
+            plan.stencils.len() <= 1 << 16,
+            "points are numbered in 16 bits"
+        );
+        let counts = plan.level_counts();
+        self.headers.push(abi::PlanHeader {
+            ring_size: plan.ring_size as u32,
+            weights: self.weights.len() as u32,
+            root: self.nodes.len() as u32,
+            max_level: plan.max_level,
+            counts: std::array::from_fn(|level| counts[level.min(counts.len() - 1)] as u32),
+        });
+        let root = self.nodes.len() as u32;
+        for node in &plan.nodes {
+            let packed = self.pack(node, root);
+            self.nodes.push(packed);
+        }
+        for stencil in &plan.stencils {
+            self.weights
+                .extend(stencil.weights.iter().map(|&weight| weight as f32));
+        }
+    }
+
+    fn pack(&mut self, node: &Node, root: u32) -> abi::Node {
+        let (place, levels, points, sharpness) = match node {
+            Node::Internal { children } => (0, 0, root + children, 0.0),
+            Node::Regular { points, .. } => (0, 0, self.list(points), 0.0),
+            Node::Crease {
+                points,
+                edge,
+                sharpness,
+            } => (*edge, 0, self.list(points), *sharpness),
+            Node::Terminal { corner, levels } => (
+                *corner,
+                levels.len() as u32,
+                self.list(&levels.concat()),
+                0.0,
+            ),
+            Node::Extraordinary { corner } => (*corner, 0, 0, 0.0),
+        };
+        abi::Node {
+            kind: node.kind() as u32 | place << 4 | levels << 8,
+            points,
+            sharpness,
+        }
+    }
+
+    /// Appends a list of points; returns where it begins.
+    fn list(&mut self, points: &[u32]) -> u32 {
+        let start = 2 * self.points.len() as u32;
+        self.points.extend(
+            points
+                .chunks(2)
+                .map(|pair| pair[0] | pair.get(1).copied().unwrap_or(0) << 16),
+        );
+        start
+    }
+
+    /// The plans as the walk reads them.
+    pub fn view(&self) -> Plans<'_> {
+        Plans {
+            headers: &self.headers,
+            nodes: &self.nodes,
+            points: &self.points,
+            weights: &self.weights,
+        }
+    }
+
+    /// How many nodes there are of a kind.
+    pub fn count(&self, kind: NodeKind) -> usize {
+        self.nodes
+            .iter()
+            .filter(|node| node.kind & 15 == kind as u32)
+            .count()
+    }
+
+    /// The bytes of the quadtrees: headers, nodes and their points.
+    pub fn quadtree_bytes(&self) -> usize {
+        size_of_val(&self.headers[..])
+            + size_of_val(&self.nodes[..])
+            + size_of_val(&self.points[..])
+    }
+
+    /// The bytes of the stencils.
+    pub fn stencil_bytes(&self) -> usize {
+        size_of_val(&self.weights[..])
+    }
+}
+
+/// Packed plans, borrowed.
+#[derive(Clone, Copy, Debug)]
+pub struct Plans<'a> {
+    /// As in [`PackedPlans`].
+    pub headers: &'a [abi::PlanHeader],
+    /// As in [`PackedPlans`].
+    pub nodes: &'a [abi::Node],
+    /// As in [`PackedPlans`].
+    pub points: &'a [u32],
+    /// As in [`PackedPlans`].
+    pub weights: &'a [f32],
+}
+
+impl Plans<'_> {
+    /// Point `number` of a list.
+    pub fn point(&self, number: u32) -> u32 {
+        self.points[number as usize / 2] >> (16 * (number % 2)) & 0xffff
+    }
+}

@@ -1,0 +1,122 @@
+//! From (u, v) to the B-spline or extraordinary vertex that is evaluated there (Brainerd et al. 2016, section 6.1), on the packed bytes.
+//! Twin of `glsl/lib/quadtree.glsl`.
+
+use glam::Vec2;
+
+use crate::abi;
+use crate::plan::packing::Plans;
+
+/// Where a walk ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Leaf {
+    /// A corner of the patch: points 3 `corner` .. 3 `corner` + 2 are its limit position and tangents.
+    Corner(u32),
+    /// A B-spline.
+    Bspline {
+        /// Where its points begin in the list.
+        points: u32,
+        /// From one row of points to the next: 4, or 5 in a terminal node.
+        stride: u32,
+        /// Where in it.
+        uv: Vec2,
+        /// By how much its derivatives are shorter than the patch's: 2^depth.
+        scale: f32,
+        /// The edge of a semi-sharp crease, and its sharpness; 0 without one.
+        edge: u32,
+        /// What is left of the sharpness.
+        sharpness: f32,
+        /// The kind of the node.
+        kind: u32,
+    },
+}
+
+/// The corner of the patch at (u, v), if that is one. Corners have stencils of their own, so that level 1 needs nothing else.
+fn corner(uv: Vec2) -> Option<u32> {
+    let [low_u, high_u, low_v, high_v] = [uv.x <= 0.0, uv.x >= 1.0, uv.y <= 0.0, uv.y >= 1.0];
+    match () {
+        _ if low_u && low_v => Some(0),
+        _ if high_u && low_v => Some(1),
+        _ if high_u && high_v => Some(2),
+        _ if low_u && high_v => Some(3),
+        _ => None,
+    }
+}
+
+/// Whether corner `corner` lies at u = 1, and whether at v = 1.
+fn sides(corner: u32) -> [bool; 2] {
+    [corner == 1 || corner == 2, corner >= 2]
+}
+
+/// Walks the quadtree of a plan.
+pub fn walk(plans: Plans, plan: u32, uv: Vec2) -> Leaf {
+    if let Some(corner) = corner(uv) {
+        return Leaf::Corner(corner);
+    }
+    // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
+    let upper = uv.cmpge(Vec2::splat(0.5));
+    let mut node = plans.nodes[plans.headers[plan as usize].root as usize];
+    let mut uv = uv;
+    let mut scale = 1.0;
+    let mut inside = false;
+    while node.kind & 15 == abi::NODE_INTERNAL {
+        let half = |x: f32, upper: bool| if inside && upper { x > 0.5 } else { x >= 0.5 };
+        let (x, y) = (half(uv.x, upper.x), half(uv.y, upper.y));
+        uv = 2.0 * uv - Vec2::new(f32::from(x as u8), f32::from(y as u8));
+        scale *= 2.0;
+        inside = true;
+        node = plans.nodes[(node.points + x as u32 + 2 * y as u32) as usize];
+    }
+    leaf(&node, uv, scale)
+}
+
+fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {
+    let (kind, place, levels) = (node.kind & 15, node.kind >> 4 & 15, node.kind >> 8);
+    match kind {
+        abi::NODE_EXTRAORDINARY => Leaf::Corner(place),
+        abi::NODE_TERMINAL => terminal(node.points, place, levels, uv, scale),
+        _ => Leaf::Bspline {
+            points: node.points,
+            stride: 4,
+            uv,
+            scale,
+            edge: place,
+            sharpness: node.sharpness,
+            kind,
+        },
+    }
+}
+
+/// The level is that of the larger distance from the extraordinary vertex: floor(-log2), read off the exponent of the float.
+fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf {
+    let [at_u, at_v] = sides(corner);
+    let mirror = |x: f32, at: bool| if at { 1.0 - x } else { x };
+    let distance = Vec2::new(mirror(uv.x, at_u), mirror(uv.y, at_v));
+    let level = level_of(distance.max_element());
+    if level >= levels {
+        return Leaf::Corner(corner);
+    }
+    let grown = power_of_two(level);
+    let local = distance * grown;
+    let (far_u, far_v) = (local.x >= 0.5, local.y >= 0.5);
+    let (x, y) = (far_u != at_u, far_v != at_v);
+    let local = Vec2::new(mirror(local.x, at_u), mirror(local.y, at_v));
+    Leaf::Bspline {
+        points: points + abi::TERMINAL_POINTS * level + x as u32 + 5 * y as u32,
+        stride: 5,
+        uv: 2.0 * local - Vec2::new(f32::from(x as u8), f32::from(y as u8)),
+        scale: scale * grown * 2.0,
+        edge: 0,
+        sharpness: 0.0,
+        kind: abi::NODE_TERMINAL,
+    }
+}
+
+/// floor(-log2 x) for x in 0..=1, and 0 for 1 itself.
+fn level_of(x: f32) -> u32 {
+    let exponent = x.to_bits() >> 23;
+    (127 - exponent.min(126)) - 1
+}
+
+fn power_of_two(exponent: u32) -> f32 {
+    f32::from_bits((127 + exponent) << 23)
+}

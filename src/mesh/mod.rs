@@ -4,7 +4,7 @@ mod builtin;
 mod control_mesh;
 mod obj;
 
-pub use builtin::{BUILTINS, builtin};
+pub use builtin::{BUILTINS, DEFAULT_BUILTIN, builtin};
 pub use control_mesh::{
     BoundaryInterpolation, ControlMesh, ControlMeshBuilder, Corner, Crease, CreaseMethod,
     FaceVarying, INFINITE_SHARPNESS, SchemeOptions, TriangleSubdivision,

@@ -7,7 +7,7 @@ mod obj;
 pub mod sharpness;
 pub mod topology;
 
-pub use builtin::{BUILTINS, builtin};
+pub use builtin::{BUILTINS, DEFAULT_BUILTIN, builtin};
 pub use control_mesh::{
     BoundaryInterpolation, ControlMesh, ControlMeshBuilder, Corner, Crease, CreaseMethod,
     FaceVarying, INFINITE_SHARPNESS, SchemeOptions, TriangleSubdivision,

@@ -3,6 +3,8 @@
 
 pub mod abi;
 pub mod error;
+#[cfg(feature = "vulkan")]
+pub mod gpu;
 pub mod mesh;
 pub mod method;
 pub mod patch;

@@ -1,0 +1,3 @@
+//! The layer over a borrowed Vulkan device.
+
+pub mod shaders;

@@ -1,0 +1,55 @@
+//! The shaders: SPIR-V modules for the pipelines, and the GLSL they come from for engines that build their own.
+//!
+//! The lists are written by `build.rs` from the folder `glsl/`. A module is named like its file (`surface.frag`), or
+//! like its method and stage (`quadtree.tese`).
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+
+/// Puts bytes where words may start: `include_bytes!` promises no alignment.
+#[repr(C, align(4))]
+#[allow(dead_code, reason = "without modules in glsl/ the list is empty")]
+struct Aligned<const N: usize>([u8; N]);
+
+/// The words of a module, ready for `VkShaderModuleCreateInfo`.
+pub fn spirv(name: &str) -> Option<&'static [u32]> {
+    find(MODULES, name).map(bytemuck::cast_slice)
+}
+
+/// The text of a GLSL source by its path below `glsl/`, for example `lib/bspline.glsl`.
+pub fn source(path: &str) -> Option<&'static str> {
+    find(SOURCES, path)
+}
+
+/// The lists are sorted by name.
+fn find<T: Copy>(list: &[(&str, T)], name: &str) -> Option<T> {
+    let place = list
+        .binary_search_by(|(other, _)| (*other).cmp(name))
+        .ok()?;
+    Some(list[place].1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_module_is_found_and_is_spirv() {
+        for (name, bytes) in MODULES {
+            let words = spirv(name).expect("listed modules are found");
+            assert_eq!(words.len() * 4, bytes.len(), "{name}");
+            assert_eq!(
+                words[0], 0x0723_0203,
+                "{name} starts with the SPIR-V magic number"
+            );
+        }
+        assert!(spirv("no such module").is_none());
+    }
+
+    #[test]
+    fn every_source_is_found() {
+        for (path, text) in SOURCES {
+            assert_eq!(source(path), Some(*text));
+        }
+        assert!(source("no/such.glsl").is_none());
+    }
+}

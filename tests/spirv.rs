@@ -1,0 +1,207 @@
+//! The SPIR-V that ships in `glsl/spirv` belongs to the sources in `glsl`.
+//!
+//! `scripts/update-spirv` runs these tests with `HULLFORM_UPDATE_SPIRV` set: then they write instead of compare.
+
+#![cfg(feature = "vulkan")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hullform::gpu::shaders::{COMPILER, FINGERPRINTS, MODULES};
+
+const REMEDY: &str = "run scripts/update-spirv and commit glsl/spirv";
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/spirv")
+}
+
+/// The manifest that the present sources and compiler make.
+fn manifest() -> String {
+    let mut text = format!(
+        "# What the modules here were compiled from, and by which compiler. Written by scripts/update-spirv.\n\
+         compiler {COMPILER}\n"
+    );
+    for (name, fingerprint) in FINGERPRINTS {
+        text += &format!("{name} {fingerprint:016x}\n");
+    }
+    text
+}
+
+/// The lines of a manifest, its comments aside, as names and values.
+fn entries(manifest: &str) -> BTreeSet<(&str, &str)> {
+    let lines = manifest.lines().filter(|line| !line.starts_with('#'));
+    lines.filter_map(|line| line.split_once(' ')).collect()
+}
+
+fn update() {
+    let shipped = fs::read_dir(folder()).expect("glsl/spirv is a folder");
+    for file in shipped.map(|entry| entry.expect("glsl/spirv can be listed").path()) {
+        if file.extension().is_some_and(|extension| extension == "spv") {
+            fs::remove_file(file).expect("old modules can be removed");
+        }
+    }
+    for (name, bytes) in MODULES {
+        fs::write(folder().join(format!("{name}.spv")), bytes).expect("glsl/spirv can be written");
+    }
+    fs::write(folder().join("MANIFEST"), manifest()).expect("glsl/spirv can be written");
+}
+
+#[test]
+fn shipped_modules_belong_to_the_sources() {
+    if cfg!(feature = "shaderc") && std::env::var_os("HULLFORM_UPDATE_SPIRV").is_some() {
+        update();
+    }
+    let shipped = fs::read_to_string(folder().join("MANIFEST")).expect("glsl/spirv has a MANIFEST");
+    let fresh = manifest();
+    let of_sources = |text| -> BTreeSet<_> {
+        let modules = entries(text).into_iter();
+        modules.filter(|(name, _)| *name != "compiler").collect()
+    };
+    assert_eq!(
+        of_sources(&shipped),
+        of_sources(&fresh),
+        "stale SPIR-V: {REMEDY}"
+    );
+
+    let files: BTreeSet<String> = fs::read_dir(folder())
+        .expect("glsl/spirv is a folder")
+        .filter_map(|entry| {
+            entry
+                .expect("glsl/spirv can be listed")
+                .file_name()
+                .into_string()
+                .ok()
+        })
+        .filter_map(|name| Some(name.strip_suffix(".spv")?.to_string()))
+        .collect();
+    let names: BTreeSet<String> = MODULES.iter().map(|(name, _)| name.to_string()).collect();
+    assert_eq!(files, names, "modules and files differ: {REMEDY}");
+
+    if cfg!(feature = "shaderc") {
+        let same_compiler =
+            COMPILER != "unknown" && entries(&shipped).contains(&("compiler", COMPILER));
+        compare_with_compiled(same_compiler);
+    } else {
+        eprintln!("not compared with compiled modules: the feature shaderc is off");
+    }
+}
+
+/// The same compiler gives the same bytes; another one at least the same interface.
+fn compare_with_compiled(same_compiler: bool) {
+    if !same_compiler {
+        eprintln!(
+            "compiled by {COMPILER}, the shipped modules by another: only interfaces are compared"
+        );
+    }
+    for (name, compiled) in MODULES {
+        let shipped =
+            fs::read(folder().join(format!("{name}.spv"))).expect("the shipped module is there");
+        if same_compiler {
+            assert!(
+                *compiled == shipped,
+                "{name}: the compiled bytes differ from the shipped ones; {REMEDY}"
+            );
+        } else {
+            assert_eq!(interface(compiled), interface(&shipped), "{name}: {REMEDY}");
+        }
+    }
+}
+
+/// One fact that a pipeline can see of a module.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Fact {
+    /// Execution model and name.
+    EntryPoint(u32, String),
+    /// Execution mode and its operands: patch size, spacing, local size.
+    Mode(Vec<u32>),
+    /// What decorates one variable, constant or block: binding, location, offsets of members.
+    Decorations(Vec<Vec<u32>>),
+}
+
+/// What pipelines see of a module, in no order and without the compiler's own numbering.
+fn interface(bytes: &[u8]) -> BTreeSet<Fact> {
+    const ENTRY_POINT: u32 = 15;
+    const EXECUTION_MODE: u32 = 16;
+    const DECORATE: u32 = 71;
+    const MEMBER_DECORATE: u32 = 72;
+    let mut facts = BTreeSet::new();
+    let mut decorations: std::collections::BTreeMap<u32, Vec<Vec<u32>>> = Default::default();
+    for instruction in instructions(bytes) {
+        let operands = &instruction[1..];
+        match instruction[0] & 0xffff {
+            ENTRY_POINT => {
+                let name = operands[2..].iter().flat_map(|word| word.to_le_bytes());
+                let name = name.take_while(|byte| *byte != 0).map(char::from).collect();
+                facts.insert(Fact::EntryPoint(operands[0], name));
+            }
+            EXECUTION_MODE => {
+                facts.insert(Fact::Mode(operands[1..].to_vec()));
+            }
+            DECORATE if seen_from_outside(operands[1]) => {
+                decorations
+                    .entry(operands[0])
+                    .or_default()
+                    .push(operands[1..].to_vec());
+            }
+            MEMBER_DECORATE if seen_from_outside(operands[2]) => {
+                decorations
+                    .entry(operands[0])
+                    .or_default()
+                    .push(operands[1..].to_vec());
+            }
+            _ => {}
+        }
+    }
+    for mut list in decorations.into_values() {
+        list.sort();
+        facts.insert(Fact::Decorations(list));
+    }
+    facts
+}
+
+/// Decorations that other stages, the layouts or the host rely on.
+fn seen_from_outside(decoration: u32) -> bool {
+    const SPEC_ID: u32 = 1;
+    const BUILT_IN: u32 = 11;
+    const PATCH: u32 = 15;
+    const LOCATION: u32 = 30;
+    const COMPONENT: u32 = 31;
+    const BINDING: u32 = 33;
+    const DESCRIPTOR_SET: u32 = 34;
+    const OFFSET: u32 = 35;
+    [
+        SPEC_ID,
+        BUILT_IN,
+        PATCH,
+        LOCATION,
+        COMPONENT,
+        BINDING,
+        DESCRIPTOR_SET,
+        OFFSET,
+    ]
+    .contains(&decoration)
+}
+
+/// The instructions of a module, each as its words.
+fn instructions(bytes: &[u8]) -> impl Iterator<Item = Vec<u32>> {
+    let mut words = bytes
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+    let mut words = {
+        let header: Vec<u32> = words.by_ref().take(5).collect();
+        assert_eq!(
+            header[0], 0x0723_0203,
+            "SPIR-V starts with its magic number"
+        );
+        words
+    };
+    std::iter::from_fn(move || {
+        let first = words.next()?;
+        Some(
+            std::iter::once(first)
+                .chain(words.by_ref().take((first >> 16) as usize - 1))
+                .collect(),
+        )
+    })
+}

@@ -1,8 +1,9 @@
 //! Turns `glsl/` into the SPIR-V modules that the crate embeds, and lists them in `shaders.rs` for `src/gpu/shaders.rs`.
 //!
-//! Every `glsl/method/NAME.glsl` makes three modules, `NAME.vert`, `NAME.tesc` and `NAME.tese`: the shells
-//! `glsl/surface.*` with the method in the place of their line `#include "method"`. Every other stage file in `glsl/`
-//! is a module of its own, named like the file.
+//! Every `glsl/method/NAME.glsl` makes five modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
+//! `NAME.fractional-even.tese` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of their line
+//! `#include "method"`. Spacing is an execution mode, hence a module of its own. Every other stage file in `glsl/` is a
+//! module of its own, named like the file.
 //!
 //! With the feature `shaderc` the modules are compiled here. Without it they are the files in `glsl/spirv`, which
 //! `scripts/update-spirv` writes and `tests/spirv.rs` holds to the sources.
@@ -18,8 +19,14 @@ type Result<T> = std::result::Result<T, String>;
 /// What the compiler is asked for, in words: a part of every fingerprint.
 const OPTIONS: &str = "vulkan1.2 spirv1.5 performance";
 
-/// The files that are compiled once a method, by extension.
-const SHELLS: [&str; 3] = ["vert", "tesc", "tese"];
+/// The shells, by the ending of the module's name and of the file, and the value of the macro `SPACING`.
+const SHELLS: [(&str, &str, Option<&str>); 5] = [
+    ("vert", "vert", None),
+    ("tesc", "tesc", None),
+    ("equal.tese", "tese", Some("equal_spacing")),
+    ("fractional-even.tese", "tese", Some("fractional_even_spacing")),
+    ("frag", "frag", None),
+];
 
 /// File extension and the macro that says so to the shader.
 const STAGES: [(&str, &str); 5] = [
@@ -62,6 +69,7 @@ struct Module {
     file: String,
     method: Option<String>,
     stage: &'static str,
+    spacing: Option<&'static str>,
 }
 
 /// All text under `glsl/`, by its path from there.
@@ -85,7 +93,7 @@ impl Sources {
             .collect();
         let mut modules = Vec::new();
         for method in &methods {
-            for extension in SHELLS {
+            for (ending, extension, spacing) in SHELLS {
                 let file = format!("surface.{extension}");
                 if !self.0.contains_key(&file) {
                     return Err(format!(
@@ -93,9 +101,10 @@ impl Sources {
                     ));
                 }
                 modules.push(Module {
-                    name: format!("{method}.{extension}"),
+                    name: format!("{method}.{ending}"),
                     method: Some(format!("method/{method}.glsl")),
                     stage: stage(&file).expect("the shells are stage files"),
+                    spacing,
                     file,
                 });
             }
@@ -106,6 +115,7 @@ impl Sources {
                     name: file.clone(),
                     method: None,
                     stage,
+                    spacing: None,
                     file: file.clone(),
                 });
             }
@@ -145,6 +155,7 @@ impl Sources {
         let mut hash = Fnv::new();
         hash.text(OPTIONS);
         hash.text(module.stage);
+        hash.text(module.spacing.unwrap_or_default());
         let mut seen: Vec<&str> = Vec::new();
         let mut open = vec![module.file.as_str()];
         while let Some(file) = open.pop() {
@@ -196,7 +207,7 @@ fn stage(file: &str) -> Option<&'static str> {
 
 fn is_shell(file: &str) -> bool {
     file.strip_prefix("surface.")
-        .is_some_and(|extension| SHELLS.contains(&extension))
+        .is_some_and(|extension| SHELLS.iter().any(|shell| shell.1 == extension))
 }
 
 /// The name in an `#include "name"` line.
@@ -327,6 +338,9 @@ fn compile(
     options.set_target_spirv(SpirvVersion::V1_5);
     options.set_optimization_level(OptimizationLevel::Performance);
     options.add_macro_definition(module.stage, Some("1"));
+    if let Some(spacing) = module.spacing {
+        options.add_macro_definition("SPACING", Some(spacing));
+    }
     options.set_include_callback(|include, _, _, _| {
         let (file, text) = sources.resolve(module, include)?;
         Ok(ResolvedInclude {

@@ -1,0 +1,9 @@
+// The control points of a patch as the evaluation shader gets them, when the method hands them on instead of using the scratch ring.
+#ifndef CONTROL_POINTS_GLSL
+#define CONTROL_POINTS_GLSL
+
+#ifdef STAGE_EVALUATION
+layout(location = 2) in vec3 in_point[];
+#endif
+
+#endif

@@ -1,0 +1,32 @@
+// The scratch ring: points that a control shader computes and the evaluation shader of the same patch reads.
+//
+// Invocation 0 of a control shader takes a slot, all 32 fill it, and the barriers make it visible before the slot's place is written as a
+// patch output. The evaluation shader reads the place first, then passes a barrier, then loads coherently. GLSL promises visibility to
+// stages that the writer triggers (GLSL 4.60, section 7.10), the memory barrier and `coherent` make it available in Vulkan's terms
+// (Vulkan spec, "Memory Model", availability and visibility).
+#ifndef SCRATCH_GLSL
+#define SCRATCH_GLSL
+
+#include "lib/interface.glsl"
+
+layout(set = 0, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
+layout(set = 0, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };
+layout(set = 0, binding = BINDING_SLOTS, scalar) readonly buffer SlotTable { uint slots[]; };
+
+const uint NO_SLOT = 0xffffffffu;
+
+#ifdef STAGE_CONTROL
+// A slot for `points` points of a patch, or NO_SLOT when the ring has no room: the patch is not drawn then, and the overflow is counted so
+// that the host can draw again. A control shader may run more than once (Vulkan spec, "Tessellation Control Shader Execution"), so the sum
+// of what is taken can exceed the sum of what is needed. Slots from the host do not depend on who runs when.
+uint take_slot(uint number, uint points) {
+    atomicAdd(counters[COUNTER_POINTS], points);
+    bool host = (frame.flags & FRAME_HOST_SLOTS) != 0u;
+    uint slot = host ? slots[number] : atomicAdd(counters[frame.counter], points);
+    if (slot + points <= frame.ring_points) return slot;
+    atomicAdd(counters[COUNTER_OVERFLOWS], 1u);
+    return NO_SLOT;
+}
+#endif
+
+#endif

@@ -1,0 +1,35 @@
+// Bilinear patches. Twin of `method/flat.rs`.
+#ifndef FLAT_GLSL
+#define FLAT_GLSL
+
+#include "lib/control_points.glsl"
+#include "lib/control_vertex.glsl"
+#include "lib/levels.glsl"
+#include "lib/surface.glsl"
+
+const uint CONTROL_POINTS = 4u;
+#define CONTROL_VERTICES 4
+
+uint greatest_level(Patch record) { return HIGHEST_LEVEL; }
+
+#ifdef STAGE_VERTEX
+// Point i is the mean of some control vertices; four words tell where each point's end.
+vec3 control_point(Patch record, uint number) {
+    uint start = number == 0u ? 4u : controls[record.controls + number - 1u];
+    uint end = controls[record.controls + number];
+    vec3 sum = vec3(0.0);
+    for (uint i = start; i < end; ++i) sum += control_vertex(controls[record.controls + i]);
+    return sum / float(end - start);
+}
+#endif
+
+#ifdef STAGE_EVALUATION
+Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
+    vec3 bottom = in_point[0] * (1.0 - uv.x) + in_point[1] * uv.x;
+    vec3 top = in_point[3] * (1.0 - uv.x) + in_point[2] * uv.x;
+    return Surface(bottom * (1.0 - uv.y) + top * uv.y,
+                   (in_point[1] - in_point[0]) * (1.0 - uv.y) + (in_point[2] - in_point[3]) * uv.y, top - bottom);
+}
+#endif
+
+#endif

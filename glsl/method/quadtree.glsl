@@ -1,0 +1,77 @@
+// Adaptive quadtrees (Brainerd et al. 2016) for faces that are no plain B-splines. Twin of `method/quadtree.rs`.
+//
+// The control points of a patch are the vertices of its 1-ring, up to 32; what a larger ring has beyond these is fetched by the control
+// shader itself (section 5). All are taken relative to the first, so that tangents deep in the tree are differences of small numbers.
+#ifndef QUADTREE_METHOD_GLSL
+#define QUADTREE_METHOD_GLSL
+
+#define SCRATCH_RING
+#define PLAN_NODES
+
+#include "lib/control_vertex.glsl"
+#include "lib/levels.glsl"
+#include "lib/quadtree.glsl"
+#include "lib/scratch.glsl"
+
+const uint CONTROL_POINTS = CONTROL_INVOCATIONS;
+#define CONTROL_VERTICES 32
+
+uint greatest_level(Patch record) { return plans[record.plan].max_level; }
+
+vec3 patch_origin(Patch record) { return control_vertex(controls[record.controls]); }
+
+#ifdef STAGE_VERTEX
+vec3 control_point(Patch record, uint number) {
+    uint ring_size = plans[record.plan].ring_size;
+    return control_vertex(controls[record.controls + min(number, ring_size - 1u)]) - patch_origin(record);
+}
+#endif
+
+#ifdef STAGE_CONTROL
+uint scratch_points(Patch record, uint level) { return plans[record.plan].counts[min(level, HIGHEST_LEVEL)]; }
+
+// Runs every 32nd stencil, beginning with this invocation's.
+void run_stencils(Patch record, uint slot, uint count) {
+    uint ring_size = plans[record.plan].ring_size;
+    uint piped = min(ring_size, CONTROL_POINTS);
+    vec3 origin = ring_size > CONTROL_POINTS ? patch_origin(record) : vec3(0.0);
+    for (uint stencil = gl_InvocationID; stencil < count; stencil += CONTROL_INVOCATIONS) {
+        uint weight = plans[record.plan].weights + stencil * ring_size;
+        vec3 sum = vec3(0.0);
+        for (uint i = 0u; i < piped; ++i) sum += weights[weight + i] * in_point[i];
+        for (uint i = piped; i < ring_size; ++i) {
+            sum += weights[weight + i] * (control_vertex(controls[record.controls + i]) - origin);
+        }
+        scratch[slot + stencil] = vec4(sum, 0.0);
+    }
+}
+#endif
+
+#ifdef STAGE_EVALUATION
+vec3 scratch_point(uint slot, uint number) { return scratch[slot + node_point(number)].xyz; }
+
+Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
+    memoryBarrierBuffer();
+    vec3 origin = patch_origin(record);
+    Leaf leaf = find_leaf(record.plan, uv);
+    if (leaf.is_corner) {
+        uint first = slot + 3u * leaf.corner;
+        return Surface(scratch[first].xyz + origin, scratch[first + 1u].xyz, scratch[first + 2u].xyz);
+    }
+    Basis u, v;
+    creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
+    Surface surface = Surface(vec3(0.0), vec3(0.0), vec3(0.0));
+    for (uint y = 0u; y < 4u; ++y) {
+        uint row = leaf.points + leaf.stride * y;
+        add_row(surface, u, v.value[y], v.derivative[y], scratch_point(slot, row), scratch_point(slot, row + 1u),
+                scratch_point(slot, row + 2u), scratch_point(slot, row + 3u));
+    }
+    return Surface(surface.position + origin, leaf.scale * surface.du, leaf.scale * surface.dv);
+}
+#endif
+
+#ifdef STAGE_FRAGMENT
+uint node_kind(Patch record, vec2 uv) { return find_leaf(record.plan, uv).kind; }
+#endif
+
+#endif

@@ -1,0 +1,50 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/interface.glsl"
+
+layout(location = 0) in uint in_patch[];
+layout(location = 1) in vec3 in_point[];
+
+#include "method"
+
+layout(vertices = CONTROL_VERTICES) out;
+
+layout(location = 0) patch out uint out_patch;
+#ifdef SCRATCH_RING
+layout(location = 1) patch out uint out_slot;
+#else
+layout(location = 2) out vec3 out_point[];
+#endif
+
+// barrier() may stand in main only, and in no control flow (GLSL 4.60, section 8.16).
+void main() {
+    uint number = in_patch[0];
+    Patch record = patch_record(number);
+    Levels levels = patch_levels(record, float(min(64u, 1u << greatest_level(record))));
+    bool drawn = number < frame.end_patch;
+#ifdef SCRATCH_RING
+    uint count = drawn ? scratch_points(record, required_level(levels, greatest_level(record))) : 0u;
+    if (gl_InvocationID == 0) out_slot = take_slot(number, count);
+    barrier();
+    uint slot = out_slot;
+    drawn = drawn && slot != NO_SLOT;
+    run_stencils(record, slot, drawn ? count : 0u);
+    memoryBarrierBuffer();
+    barrier();
+    memoryBarrierBuffer();
+#else
+    out_point[gl_InvocationID] = in_point[gl_InvocationID];
+#endif
+    if (gl_InvocationID == 0) {
+        out_patch = number;
+        // Outer level 0 discards a patch (Vulkan spec, "Tessellator Patch Discard").
+        vec4 edges = drawn ? levels.edges : vec4(0.0);
+        gl_TessLevelOuter[0] = edges[3];
+        gl_TessLevelOuter[1] = edges[0];
+        gl_TessLevelOuter[2] = edges[1];
+        gl_TessLevelOuter[3] = edges[2];
+        gl_TessLevelInner[0] = levels.inside;
+        gl_TessLevelInner[1] = levels.inside;
+    }
+}

@@ -1,0 +1,15 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/interface.glsl"
+#include "method"
+
+// The patch's number comes from here: gl_PrimitiveID is not to be relied on in later stages of some drivers.
+layout(location = 0) out uint out_patch;
+layout(location = 1) out vec3 out_point;
+
+void main() {
+    uint vertex = uint(gl_VertexIndex);
+    out_patch = frame.first_patch + uint(gl_InstanceIndex) * frame.patches_per_instance + vertex / CONTROL_POINTS;
+    out_point = control_point(patch_record(out_patch), vertex % CONTROL_POINTS);
+}

@@ -2,6 +2,8 @@
 //! evaluation shaders every frame.
 
 pub mod error;
+#[cfg(feature = "vulkan")]
+pub mod gpu;
 pub mod mesh;
 
 pub use error::{Error, Place, Result};

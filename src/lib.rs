@@ -4,6 +4,8 @@
 pub mod error;
 #[cfg(feature = "vulkan")]
 pub mod gpu;
+#[cfg(feature = "host")]
+pub mod host;
 pub mod mesh;
 
 pub use error::{Error, Place, Result};

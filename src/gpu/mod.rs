@@ -6,6 +6,7 @@ pub mod buffer;
 mod call;
 pub mod driver;
 pub mod features;
+pub mod ring;
 pub mod workaround;
 
 pub use buffer::Buffer;

@@ -24,7 +24,11 @@ const SHELLS: [(&str, &str, Option<&str>); 5] = [
     ("vert", "vert", None),
     ("tesc", "tesc", None),
     ("equal.tese", "tese", Some("equal_spacing")),
-    ("fractional-even.tese", "tese", Some("fractional_even_spacing")),
+    (
+        "fractional-even.tese",
+        "tese",
+        Some("fractional_even_spacing"),
+    ),
     ("frag", "frag", None),
 ];
 

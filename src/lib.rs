@@ -5,10 +5,13 @@ pub mod abi;
 pub mod error;
 #[cfg(feature = "vulkan")]
 pub mod gpu;
+#[cfg(feature = "host")]
+pub mod host;
 pub mod mesh;
 pub mod method;
 pub mod patch;
 pub mod plan;
 pub mod subdivision;
+pub mod tessellation;
 
 pub use error::{Error, Place, Result};

@@ -1,3 +1,27 @@
 //! The layer over a borrowed Vulkan device.
+//!
+//! The engine owns instance, device, queue and allocator; nothing here submits or waits.
 
+mod batches;
+pub mod buffer;
+mod call;
+mod capture;
+pub mod driver;
+pub mod features;
+mod layout;
+mod pipeline;
+pub mod ring;
 pub mod shaders;
+mod surface;
+pub mod workaround;
+
+pub use batches::{Batch, Cut};
+pub use buffer::Buffer;
+pub(crate) use call::failed;
+pub use capture::captured;
+pub use driver::{Driver, Version};
+pub use features::{FeatureChain, OptionalFeatures, Support};
+pub use layout::Layout;
+pub use pipeline::{Fill, Pipelines, Target};
+pub use surface::{Counters, Slots, SurfaceOptions, TessellatedSurface};
+pub use workaround::{Remedy, Workaround, workarounds};

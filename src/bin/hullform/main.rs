@@ -1,1 +1,92 @@
-fn main() {}
+//! The `hullform` program: subdivision surfaces from the command line.
+
+mod camera;
+mod devices;
+mod gpu;
+mod model;
+mod options;
+mod output;
+mod plan;
+mod progress;
+mod render;
+mod tessellate;
+
+use clap::{Parser, Subcommand};
+use hullform::{Error, Result};
+use options::Global;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Subdivision surfaces through Vulkan's tessellation shaders.
+///
+/// Exit codes: 0 done; 1 failed, or the validation layer complained; 2 bad input or usage; 3 no suitable Vulkan device.
+#[derive(Parser)]
+#[command(version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    global: Global,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Draw a model into a PNG file
+    Render(render::Arguments),
+    /// Write the tessellated surface as points or triangles
+    Tessellate(tessellate::Arguments),
+    /// Tell how the faces of a model are planned
+    Plan(plan::Arguments),
+    /// List the Vulkan devices and how they suit us
+    Devices,
+}
+
+fn main() -> ExitCode {
+    log_to_stderr();
+    let arguments = Arguments::parse();
+    let global = &arguments.global;
+    let result = match &arguments.command {
+        Command::Render(arguments) => render::run(arguments, global),
+        Command::Tessellate(arguments) => tessellate::run(arguments, global),
+        Command::Plan(arguments) => plan::run(arguments, global),
+        Command::Devices => devices::run(global),
+    };
+    exit_code(result)
+}
+
+fn exit_code(result: Result<()>) -> ExitCode {
+    let Err(error) = result else {
+        return ExitCode::SUCCESS;
+    };
+    // Not eprintln, which panics where nobody listens.
+    let _ = writeln!(std::io::stderr(), "hullform: {error}");
+    ExitCode::from(error.exit_code())
+}
+
+/// Warnings and errors, or what RUST_LOG asks for.
+fn log_to_stderr() {
+    use tracing_subscriber::filter::{EnvFilter, LevelFilter};
+    let filter = EnvFilter::builder()
+        .with_default_directive(LevelFilter::WARN.into())
+        .from_env_lossy();
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_target(false)
+        .without_time()
+        // It would report a closed stderr on stderr, and panic.
+        .log_internal_errors(false)
+        .init();
+}
+
+/// Prints `text` and a line break on standard output. That the reader has gone (`hullform devices | head -1`) is not an error.
+fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::File {
+            path: "standard output".into(),
+            source: error,
+        }),
+        _ => Ok(()),
+    }
+}

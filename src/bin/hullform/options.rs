@@ -1,0 +1,133 @@
+//! Options that several subcommands share, and how their values are read.
+
+use clap::{Args, ValueEnum};
+use std::str::FromStr;
+
+/// Options of every subcommand.
+#[derive(Args)]
+pub struct Global {
+    /// Vulkan device: its index or a part of its name [default: the first discrete GPU that will do, else any]
+    #[arg(long, global = true, value_name = "INDEX|NAME")]
+    pub device: Option<String>,
+    /// Run under the validation layer; any message of it makes the run fail
+    #[arg(long, global = true)]
+    pub validation: bool,
+    /// Switch off the workarounds for driver faults (see `hullform devices`)
+    #[arg(long, global = true)]
+    pub no_workarounds: bool,
+    /// Print results as JSON
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Scratch memory that control shaders share: bytes, or with KiB or MiB
+    #[arg(long, global = true, value_name = "N", default_value = "1MiB", value_parser = bytes)]
+    pub ring_bytes: u64,
+}
+
+/// Where the vertices of a subdivided edge lie: Vulkan's spacing modes that keep them apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Spacing {
+    /// Whole levels, equal steps
+    Equal,
+    /// Any level; vertices slide in pairs as it grows
+    FractionalEven,
+}
+
+/// How a surface is cut up: options that `render` and `tessellate` share.
+#[derive(Args)]
+pub struct Cut {
+    /// Surface method
+    #[arg(long, value_name = "NAME", default_value = "quadtree")]
+    pub method: String,
+    /// Tessellation level, 1 to 64
+    #[arg(long, default_value = "8", value_parser = level)]
+    pub level: f32,
+    /// Spacing of the vertices along an edge
+    #[arg(long, default_value = "equal")]
+    pub spacing: Spacing,
+}
+
+/// Width and height of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+}
+
+impl FromStr for Size {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Size, Self::Err> {
+        let sides = text.split_once(['x', 'X']);
+        let sides = sides.and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+        match sides {
+            Some((width @ 1.., height @ 1..)) => Ok(Size { width, height }),
+            _ => Err("expected WIDTHxHEIGHT in pixels, such as 1280x720"),
+        }
+    }
+}
+
+fn level(text: &str) -> Result<f32, &'static str> {
+    match text.parse() {
+        Ok(level) if (1.0..=64.0).contains(&level) => Ok(level),
+        _ => Err("expected a number from 1 to 64"),
+    }
+}
+
+fn bytes(text: &str) -> Result<u64, &'static str> {
+    let units = [("KiB", 1 << 10), ("MiB", 1 << 20)];
+    let stripped = units
+        .iter()
+        .find_map(|&(name, unit)| Some((text.strip_suffix(name)?, unit)));
+    let (digits, unit) = stripped.unwrap_or((text, 1));
+    let count: Option<u64> = digits.trim_end().parse().ok();
+    match count.and_then(|count| count.checked_mul(unit)) {
+        Some(bytes @ 1..) => Ok(bytes),
+        _ => Err("expected a number of bytes, such as 65536, 512KiB or 4MiB"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        let size = Size {
+            width: 640,
+            height: 480,
+        };
+        assert_eq!("640x480".parse(), Ok(size));
+        for wrong in [
+            "",
+            "640",
+            "640x",
+            "0x480",
+            "-1x4",
+            "640x480x3",
+            "9999999999x1",
+        ] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn levels() {
+        assert_eq!(level("1"), Ok(1.0));
+        assert_eq!(level("6.5"), Ok(6.5));
+        for wrong in ["0.99", "64.01", "NaN", "inf", "x", ""] {
+            assert!(level(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn byte_counts() {
+        assert_eq!(bytes("4096"), Ok(4096));
+        assert_eq!(bytes("3KiB"), Ok(3072));
+        assert_eq!(bytes("1 MiB"), Ok(1 << 20));
+        for wrong in ["0", "KiB", "1GB", "-1", "18446744073709551615MiB"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Files that are there completely or not at all.
+
+pub mod csv;
+pub mod obj;
+mod pending;
+pub mod ply;
+pub mod png;
+
+pub use pending::Pending;
+
+use hullform::{Error, Result};
+use std::path::Path;
+
+/// A file format, known by the extension of the file's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A picture.
+    Png,
+    /// Points, one a line.
+    Csv,
+    /// Triangles as text.
+    Obj,
+    /// Triangles as bytes.
+    Ply,
+}
+
+/// A tessellated surface.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Its points; patches do not share theirs.
+    pub points: Vec<Point>,
+    /// Its triangles, by the points' numbers from 0.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A point of a tessellated surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Point {
+    /// The ptex face.
+    pub face: u32,
+    /// Where in the face.
+    pub uv: [f32; 2],
+    /// Where in space.
+    pub position: [f32; 3],
+    /// The surface's unit normal.
+    pub normal: [f32; 3],
+}
+
+impl Format {
+    const ALL: [Format; 4] = [Format::Png, Format::Csv, Format::Obj, Format::Ply];
+
+    /// The format that `path`'s extension means, if it is one of `allowed`.
+    pub fn of(path: &Path, allowed: &[Format]) -> Result<Format> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let named = |format: &&Format| format.extension().eq_ignore_ascii_case(&extension);
+        let found = Format::ALL.iter().find(named);
+        let found = found.copied().filter(|format| allowed.contains(format));
+        found.ok_or_else(|| {
+            let allowed: Vec<_> = allowed.iter().map(|format| format.extension()).collect();
+            Error::Option {
+                option: "--output",
+                problem: format!("{} has no extension that is known here", path.display()),
+                remedy: format!("choose a name that ends in .{}", allowed.join(", .")),
+            }
+        })
+    }
+
+    fn extension(self) -> &'static str {
+        match self {
+            Format::Png => "png",
+            Format::Csv => "csv",
+            Format::Obj => "obj",
+            Format::Ply => "ply",
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// One triangle, with numbers whose text is not obvious.
+    pub(crate) fn triangle() -> Surface {
+        let point = |face, uv, position| Point {
+            face,
+            uv,
+            position,
+            normal: [0.0, 0.0, 1.0],
+        };
+        Surface {
+            points: vec![
+                point(7, [0.0, 0.0], [0.0, -0.1, 1e-9]),
+                point(7, [1.0, 0.0], [1.0, 0.0, 16_777_216.0]),
+                point(7, [1.0 / 3.0, 1.0], [0.0, 1.5, 0.0]),
+            ],
+            triangles: vec![[0, 1, 2]],
+        }
+    }
+
+    #[test]
+    fn extensions_are_known_in_any_case() {
+        let of = |name: &str| Format::of(Path::new(name), &[Format::Csv, Format::Obj]);
+        assert_eq!(of("a.csv").ok(), Some(Format::Csv));
+        assert_eq!(of("a.b.OBJ").ok(), Some(Format::Obj));
+        for wrong in ["a.png", "a.txt", "csv", "", ".csv"] {
+            let error = of(wrong).expect_err(wrong);
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.to_string().ends_with("ends in .csv, .obj"));
+        }
+    }
+}

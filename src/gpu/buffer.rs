@@ -1,0 +1,141 @@
+//! A buffer with memory of its own.
+
+use crate::error::{Error, Result};
+use crate::gpu::failed;
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
+
+/// A Vulkan buffer and the memory bound to it.
+///
+/// It borrows nothing, so the owner must call [`Buffer::destroy`]; a buffer that is only dropped leaks until the device goes
+/// (and the validation layer says so).
+#[derive(Debug)]
+pub struct Buffer {
+    raw: vk::Buffer,
+    size: u64,
+    allocation: Allocation,
+}
+
+impl Buffer {
+    /// A buffer of `size` bytes; `name` is what the allocator's reports call it.
+    ///
+    /// A size of 0 is fine here, though not in Vulkan (VUID-VkBufferCreateInfo-size-00912): 4 bytes are allocated then.
+    ///
+    /// # Safety
+    /// `device` is live, `allocator` was made for it, and `usage` needs no feature that the device was created without.
+    pub unsafe fn new(
+        device: &ash::Device,
+        allocator: &mut Allocator,
+        name: &str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Buffer> {
+        let info = vk::BufferCreateInfo::default()
+            .size(size.max(4))
+            .usage(usage)
+            .sharing_mode(vk::SharingMode::EXCLUSIVE);
+        // SAFETY: the device is live by this function's contract; the info's pointers live through the call.
+        let raw = unsafe { device.create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
+        // SAFETY: `raw` was just made from `device` and nothing has been bound to it.
+        match unsafe { allocate_and_bind(device, allocator, name, raw, location) } {
+            Ok(allocation) => Ok(Buffer {
+                raw,
+                size,
+                allocation,
+            }),
+            Err(error) => {
+                // SAFETY: `raw` is ours and no command has seen it.
+                unsafe { device.destroy_buffer(raw, None) };
+                Err(error)
+            }
+        }
+    }
+
+    /// The handle.
+    pub fn raw(&self) -> vk::Buffer {
+        self.raw
+    }
+
+    /// The size that was asked for, in bytes.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// The contents, of a buffer that the host can see. gpu-allocator's mapped memory is coherent: nothing to flush.
+    ///
+    /// Meaningful once the GPU's writes are finished and made visible: a barrier to `HOST`/`HOST_READ`, then a fence.
+    ///
+    /// # Panics
+    /// If the buffer was made with [`MemoryLocation::GpuOnly`] and is not mapped.
+    pub fn bytes(&self) -> &[u8] {
+        let mapped = self.allocation.mapped_slice();
+        &mapped.expect("only host-visible buffers are read by the host")[..self.size as usize]
+    }
+
+    /// Copies `bytes` to `offset`. A submission after this call sees them (Vulkan, "Host Write Ordering Guarantees").
+    ///
+    /// # Panics
+    /// If the buffer is not mapped, or the bytes do not fit.
+    pub fn write(&mut self, offset: u64, bytes: &[u8]) {
+        let (size, offset) = (self.size as usize, offset as usize);
+        let mapped = self.allocation.mapped_slice_mut();
+        let mapped = mapped.expect("only host-visible buffers are written by the host");
+        mapped[..size][offset..][..bytes.len()].copy_from_slice(bytes);
+    }
+
+    /// Gives buffer and memory back.
+    ///
+    /// # Safety
+    /// `device` and `allocator` are those that made the buffer, and no submitted command still uses it.
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+        // SAFETY: not in use, by this function's contract. The buffer goes before the memory it is bound to.
+        unsafe { device.destroy_buffer(self.raw, None) };
+        free(allocator, self.allocation);
+    }
+}
+
+/// Gives memory back to the allocator.
+pub(crate) fn free(allocator: &mut Allocator, allocation: Allocation) {
+    allocator
+        .free(allocation)
+        .expect("memory goes back to the allocator it came from");
+}
+
+/// The allocator's failures as this crate's error.
+pub(crate) fn out_of_memory(error: gpu_allocator::AllocationError) -> Error {
+    Error::Vulkan {
+        call: "vkAllocateMemory",
+        result: error.to_string(),
+    }
+}
+
+/// # Safety
+/// `raw` is an unbound buffer of the live `device`, and `allocator` was made for that device.
+unsafe fn allocate_and_bind(
+    device: &ash::Device,
+    allocator: &mut Allocator,
+    name: &str,
+    raw: vk::Buffer,
+    location: MemoryLocation,
+) -> Result<Allocation> {
+    let request = AllocationCreateDesc {
+        name,
+        // SAFETY: `raw` is a buffer of `device`.
+        requirements: unsafe { device.get_buffer_memory_requirements(raw) },
+        location,
+        linear: true,
+        allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+    };
+    let allocation = allocator.allocate(&request).map_err(out_of_memory)?;
+    // SAFETY: size, alignment and memory type of the range come from the buffer's own requirements; `raw` is unbound.
+    let bound = unsafe { device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
+    match bound {
+        Ok(()) => Ok(allocation),
+        Err(code) => {
+            free(allocator, allocation);
+            Err(failed("vkBindBufferMemory")(code))
+        }
+    }
+}

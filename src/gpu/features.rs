@@ -1,0 +1,272 @@
+//! What we need of a physical device, and how to switch it on.
+//!
+//! An engine asks [`Support::query`] whether a device will do and lets [`FeatureChain`] set the features when it creates the
+//! device, or sets them in structs of its own with [`Support::require`].
+
+use ash::{khr, vk};
+
+/// Features that we use where they exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OptionalFeatures {
+    /// Wireframes (`fillModeNonSolid`).
+    pub fill_mode_non_solid: bool,
+    /// Shader invocation counts (`pipelineStatisticsQuery`).
+    pub pipeline_statistics_query: bool,
+    /// Shading at each sample (`sampleRateShading`).
+    pub sample_rate_shading: bool,
+    /// `maintenance4`, from Vulkan 1.3 or `VK_KHR_maintenance4`: shader interfaces of unequal width may be linked.
+    pub maintenance4: bool,
+}
+
+/// How a physical device meets what we need.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Support {
+    /// The device's Vulkan version.
+    pub api_version: u32,
+    /// The first queue family that draws.
+    pub graphics_family: Option<u32>,
+    /// Control and evaluation shaders.
+    pub tessellation_shader: bool,
+    /// Buffer writes and atomics before the fragment shader: control shaders hand stencils over through a buffer.
+    pub vertex_pipeline_stores_and_atomics: bool,
+    /// Buffers laid out like Rust's `#[repr(C)]`.
+    pub scalar_block_layout: bool,
+    /// What we use where it exists.
+    pub optional: OptionalFeatures,
+    /// `maintenance4` comes from an extension that has to be named, as the device is below Vulkan 1.3.
+    pub maintenance4_by_extension: bool,
+}
+
+impl Support {
+    /// Asks `physical`.
+    ///
+    /// # Safety
+    /// `physical` belongs to the live `instance`, which was created for Vulkan 1.2 or later.
+    pub unsafe fn query(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Support {
+        // SAFETY: the caller's instance and physical device, here and below.
+        let api_version = unsafe { instance.get_physical_device_properties(physical) }.api_version;
+        // SAFETY: as above.
+        let queues = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+        let mut support = Support {
+            api_version,
+            graphics_family: queues
+                .iter()
+                .position(|family| family.queue_flags.contains(vk::QueueFlags::GRAPHICS))
+                .map(|family| family as u32),
+            ..Support::default()
+        };
+        // SAFETY: as above.
+        unsafe { support.query_features(instance, physical) };
+        support
+    }
+
+    /// What is lacking, each in words; empty if the device will do.
+    pub fn missing(&self) -> Vec<String> {
+        let version = self.api_version;
+        let (major, minor) = (
+            vk::api_version_major(version),
+            vk::api_version_minor(version),
+        );
+        let needs = [
+            (
+                version >= vk::API_VERSION_1_2,
+                format!("Vulkan 1.2 (it has {major}.{minor})"),
+            ),
+            (self.graphics_family.is_some(), "a graphics queue".into()),
+            (
+                self.tessellation_shader,
+                "tessellation shaders (tessellationShader)".into(),
+            ),
+            (
+                self.vertex_pipeline_stores_and_atomics,
+                "buffer writes from control shaders (vertexPipelineStoresAndAtomics)".into(),
+            ),
+            (
+                self.scalar_block_layout,
+                "scalar buffer layout (scalarBlockLayout)".into(),
+            ),
+        ];
+        let lacking = needs.into_iter().filter(|(met, _)| !met);
+        lacking.map(|(_, words)| words).collect()
+    }
+
+    /// The device extensions to enable for the features of this struct.
+    pub fn extensions(&self) -> Vec<&'static std::ffi::CStr> {
+        if self.maintenance4_by_extension {
+            vec![khr::maintenance4::NAME]
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Sets the required features, and the optional ones that exist, in an engine's own structs; clears nothing.
+    ///
+    /// `maintenance4` has a struct of its own and is left to the caller.
+    pub fn require(
+        &self,
+        core: &mut vk::PhysicalDeviceFeatures,
+        vulkan12: &mut vk::PhysicalDeviceVulkan12Features<'_>,
+    ) {
+        let set = |field: &mut vk::Bool32, wanted: bool| *field |= vk::Bool32::from(wanted);
+        set(&mut core.tessellation_shader, true);
+        set(&mut core.vertex_pipeline_stores_and_atomics, true);
+        set(&mut vulkan12.scalar_block_layout, true);
+        let optional = self.optional;
+        set(&mut core.fill_mode_non_solid, optional.fill_mode_non_solid);
+        set(
+            &mut core.pipeline_statistics_query,
+            optional.pipeline_statistics_query,
+        );
+        set(&mut core.sample_rate_shading, optional.sample_rate_shading);
+    }
+
+    /// # Safety
+    /// As [`Support::query`].
+    unsafe fn query_features(&mut self, instance: &ash::Instance, physical: vk::PhysicalDevice) {
+        let mut scalar = vk::PhysicalDeviceScalarBlockLayoutFeatures::default();
+        let mut maintenance4 = vk::PhysicalDeviceMaintenance4Features::default();
+        let mut features = vk::PhysicalDeviceFeatures2::default();
+        // Structs from beyond the device's version stay out of the chain: nobody would fill them in.
+        if self.api_version >= vk::API_VERSION_1_2 {
+            features = features.push_next(&mut scalar);
+        }
+        let core13 = self.api_version >= vk::API_VERSION_1_3;
+        // SAFETY: the caller's instance and physical device.
+        let by_extension =
+            !core13 && unsafe { has_extension(instance, physical, khr::maintenance4::NAME) };
+        if core13 || by_extension {
+            features = features.push_next(&mut maintenance4);
+        }
+        // SAFETY: the caller's; each struct in the chain is one that the device knows and outlives the call.
+        unsafe { instance.get_physical_device_features2(physical, &mut features) };
+        let core = features.features;
+        self.tessellation_shader = core.tessellation_shader != 0;
+        self.vertex_pipeline_stores_and_atomics = core.vertex_pipeline_stores_and_atomics != 0;
+        self.scalar_block_layout = scalar.scalar_block_layout != 0;
+        self.optional = OptionalFeatures {
+            fill_mode_non_solid: core.fill_mode_non_solid != 0,
+            pipeline_statistics_query: core.pipeline_statistics_query != 0,
+            sample_rate_shading: core.sample_rate_shading != 0,
+            maintenance4: maintenance4.maintenance4 != 0,
+        };
+        self.maintenance4_by_extension = by_extension && self.optional.maintenance4;
+    }
+}
+
+/// The feature structs to chain when a device is created, for those who have none of their own.
+pub struct FeatureChain {
+    core: vk::PhysicalDeviceFeatures2<'static>,
+    vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,
+    maintenance4: Option<vk::PhysicalDeviceMaintenance4Features<'static>>,
+}
+
+impl FeatureChain {
+    /// The required features, and the optional ones that `support` found.
+    pub fn new(support: &Support) -> FeatureChain {
+        let mut core = vk::PhysicalDeviceFeatures2::default();
+        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default();
+        support.require(&mut core.features, &mut vulkan12);
+        let maintenance4 = vk::PhysicalDeviceMaintenance4Features::default().maintenance4(true);
+        FeatureChain {
+            core,
+            vulkan12,
+            maintenance4: support.optional.maintenance4.then_some(maintenance4),
+        }
+    }
+
+    /// Chains the structs to `info`.
+    ///
+    /// # Safety
+    /// The device's [`Support::missing`] is empty and [`Support::extensions`] are enabled in `info`. `info` has no
+    /// `pEnabledFeatures` (VUID-VkDeviceCreateInfo-pNext-00373), and none of `VkPhysicalDeviceFeatures2`,
+    /// `VkPhysicalDeviceVulkan12Features` (nor a struct that it contains, VUID-VkDeviceCreateInfo-pNext-02830),
+    /// `VkPhysicalDeviceMaintenance4Features` or `VkPhysicalDeviceVulkan13Features` is chained to it already: if the engine
+    /// has these, [`Support::require`] sets the features in them.
+    pub unsafe fn chain<'a>(
+        &'a mut self,
+        mut info: vk::DeviceCreateInfo<'a>,
+    ) -> vk::DeviceCreateInfo<'a> {
+        if let Some(maintenance4) = &mut self.maintenance4 {
+            info = info.push_next(maintenance4);
+        }
+        info.push_next(&mut self.vulkan12).push_next(&mut self.core)
+    }
+}
+
+/// Whether `physical` has the device extension `name`; a device that fails to answer has none.
+///
+/// # Safety
+/// `physical` belongs to the live `instance`.
+pub(crate) unsafe fn has_extension(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    name: &std::ffi::CStr,
+) -> bool {
+    // SAFETY: the caller's instance and physical device.
+    let all = unsafe { instance.enumerate_device_extension_properties(physical) };
+    all.unwrap_or_default()
+        .iter()
+        .any(|extension| extension.extension_name_as_c_str() == Ok(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn good() -> Support {
+        Support {
+            api_version: vk::API_VERSION_1_3,
+            graphics_family: Some(0),
+            tessellation_shader: true,
+            vertex_pipeline_stores_and_atomics: true,
+            scalar_block_layout: true,
+            ..Support::default()
+        }
+    }
+
+    #[test]
+    fn a_good_device_lacks_nothing() {
+        assert!(good().missing().is_empty());
+    }
+
+    #[test]
+    fn what_is_lacking_is_named() {
+        let lacking = Support {
+            api_version: vk::API_VERSION_1_1,
+            graphics_family: None,
+            scalar_block_layout: false,
+            ..good()
+        };
+        let words = lacking.missing();
+        assert_eq!(words.len(), 3);
+        assert_eq!(words[0], "Vulkan 1.2 (it has 1.1)");
+        assert!(words[2].contains("scalarBlockLayout"));
+        assert_eq!(Support::default().missing().len(), 5);
+    }
+
+    #[test]
+    fn require_keeps_what_the_engine_set() {
+        let mut core = vk::PhysicalDeviceFeatures::default()
+            .sampler_anisotropy(true)
+            .sample_rate_shading(true);
+        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default().timeline_semaphore(true);
+        good().require(&mut core, &mut vulkan12);
+        assert_eq!(core.sampler_anisotropy, 1);
+        assert_eq!(core.sample_rate_shading, 1);
+        assert_eq!(core.tessellation_shader, 1);
+        assert_eq!(core.fill_mode_non_solid, 0);
+        assert_eq!(vulkan12.timeline_semaphore, 1);
+        assert_eq!(vulkan12.scalar_block_layout, 1);
+    }
+
+    #[test]
+    fn an_extension_is_named_only_where_it_is_needed() {
+        assert!(good().extensions().is_empty());
+        let older = Support {
+            api_version: vk::API_VERSION_1_2,
+            maintenance4_by_extension: true,
+            ..good()
+        };
+        assert_eq!(older.extensions(), [khr::maintenance4::NAME]);
+    }
+}

@@ -1,0 +1,246 @@
+//! A logical device with one queue and an allocator.
+
+use crate::error::{Error, Result};
+use crate::gpu::features::has_extension;
+use crate::gpu::{FeatureChain, failed};
+use crate::host::Instance;
+use crate::host::choice::{DeviceInfo, choose, devices};
+use ash::{khr, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long [`Device::submit`] waits. Generous: a software device may well draw for a minute.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// A Vulkan device, its graphics queue and its memory. Clones share it; it goes with the last of them.
+#[derive(Clone)]
+pub struct Device(Arc<Shared>);
+
+/// Fields are dropped in this order: memory is freed while the device lives.
+struct Shared {
+    allocator: Mutex<Allocator>,
+    /// Locked while something is submitted: a queue is for one thread at a time.
+    queue: Mutex<vk::Queue>,
+    info: DeviceInfo,
+    hung: AtomicBool,
+    logical: Logical,
+}
+
+struct Logical {
+    raw: ash::Device,
+    instance: Instance,
+}
+
+impl Drop for Logical {
+    fn drop(&mut self) {
+        // SAFETY: the last owner goes, so nobody submits. Queues are idle: each submission was waited for (one that ran out
+        // of patience keeps the device alive for good).
+        unsafe { self.raw.destroy_device(None) };
+    }
+}
+
+impl Device {
+    /// Opens the device that `selector` means: an index or a part of a name; without one the first suitable discrete GPU,
+    /// else integrated, else any.
+    ///
+    /// # Errors
+    /// [`Error::NoDevice`] says what each device lacks.
+    pub fn open(instance: &Instance, selector: Option<&str>) -> Result<Device> {
+        let info = choose(&devices(instance)?, selector)?;
+        tracing::info!(device = info.name, driver = info.driver.info, "opened");
+        let family = info.support.graphics_family;
+        let family = family.expect("a suitable device has a graphics queue");
+        let logical = Logical {
+            raw: create(instance, &info, family)?,
+            instance: instance.clone(),
+        };
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.raw().clone(),
+            device: logical.raw.clone(),
+            physical_device: info.physical,
+            debug_settings: Default::default(),
+            buffer_device_address: false,
+            allocation_sizes: Default::default(),
+        });
+        // SAFETY: the device was created with one queue of this family.
+        let queue = unsafe { logical.raw.get_device_queue(family, 0) };
+        Ok(Device(Arc::new(Shared {
+            allocator: Mutex::new(allocator.map_err(crate::gpu::buffer::out_of_memory)?),
+            queue: Mutex::new(queue),
+            info,
+            hung: AtomicBool::new(false),
+            logical,
+        })))
+    }
+
+    /// The functions of this device.
+    pub fn raw(&self) -> &ash::Device {
+        &self.0.logical.raw
+    }
+
+    /// The instance it belongs to.
+    pub fn instance(&self) -> &Instance {
+        &self.0.logical.instance
+    }
+
+    /// What it is and can do. All of [`DeviceInfo::support`] is switched on.
+    pub fn info(&self) -> &DeviceInfo {
+        &self.0.info
+    }
+
+    /// Its limits.
+    pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
+        &self.0.info.limits
+    }
+
+    /// The family of its queue.
+    pub fn queue_family(&self) -> u32 {
+        let family = self.0.info.support.graphics_family;
+        family.expect("a suitable device has a graphics queue")
+    }
+
+    /// Its queue, for the caller alone as long as the guard is held.
+    pub fn queue(&self) -> MutexGuard<'_, vk::Queue> {
+        self.0.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Its memory, for the caller alone as long as the guard is held.
+    pub fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        let allocator = self.0.allocator.lock();
+        allocator.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether a submission ran out of patience. What it used may still be in use and must not be destroyed.
+    pub fn is_hung(&self) -> bool {
+        self.0.hung.load(Ordering::Acquire)
+    }
+
+    /// Records commands, submits them and waits until they are done, at most five minutes.
+    ///
+    /// `record` gets a primary command buffer outside of any render pass, so it may reset queries, fill buffers and begin
+    /// passes. If it fails, nothing is submitted.
+    pub fn submit<T>(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
+        self.submit_within(PATIENCE, record)
+    }
+
+    /// As [`Device::submit`], with a patience of one's own.
+    ///
+    /// When it runs out the error is `vkWaitForFences failed: TIMEOUT`, [`Device::is_hung`] turns true, and the device is
+    /// never destroyed: destroying what a queue still uses is undefined.
+    pub fn submit_within<T>(
+        &self,
+        patience: Duration,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<T>,
+    ) -> Result<T> {
+        let once = OneShot::new(self)?;
+        let begin = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the command buffer is new and ours.
+        unsafe { self.raw().begin_command_buffer(once.cmd, &begin) }
+            .map_err(failed("vkBeginCommandBuffer"))?;
+        let result = record(once.cmd)?;
+        // SAFETY: it is recording since the call above.
+        unsafe { self.raw().end_command_buffer(once.cmd) }.map_err(failed("vkEndCommandBuffer"))?;
+        self.submit_and_wait(once, patience)?;
+        Ok(result)
+    }
+
+    fn submit_and_wait(&self, once: OneShot<'_>, patience: Duration) -> Result<()> {
+        let buffers = [once.cmd];
+        let submit = vk::SubmitInfo::default().command_buffers(&buffers);
+        {
+            let queue = self.queue();
+            // SAFETY: the queue is locked; the command buffer has been ended and is submitted once; the fence is unsignalled.
+            unsafe { self.raw().queue_submit(*queue, &[submit], once.fence) }
+                .map_err(failed("vkQueueSubmit"))?;
+        }
+        let nanoseconds = u64::try_from(patience.as_nanos()).unwrap_or(u64::MAX);
+        // SAFETY: the fence is ours.
+        let waited = unsafe { self.raw().wait_for_fences(&[once.fence], true, nanoseconds) };
+        match waited {
+            Err(vk::Result::TIMEOUT) => {
+                self.0.hung.store(true, Ordering::Release);
+                // Still in use: neither the commands nor the device may go.
+                std::mem::forget(once);
+                std::mem::forget(self.clone());
+                Err(Error::Vulkan {
+                    call: "vkWaitForFences",
+                    result: format!("TIMEOUT after {} s", patience.as_secs_f32()),
+                })
+            }
+            // After any other failure (the device is lost) nothing runs any more.
+            done => done.map_err(failed("vkWaitForFences")),
+        }
+    }
+}
+
+/// A command buffer for one submission, with a pool and a fence of its own: nothing to share, so nothing to lock.
+struct OneShot<'a> {
+    device: &'a Device,
+    pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
+    fence: vk::Fence,
+}
+
+impl<'a> OneShot<'a> {
+    fn new(device: &'a Device) -> Result<OneShot<'a>> {
+        let raw = device.raw();
+        let mut once = OneShot {
+            device,
+            pool: vk::CommandPool::null(),
+            cmd: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+        };
+        let pool = vk::CommandPoolCreateInfo::default()
+            .queue_family_index(device.queue_family())
+            .flags(vk::CommandPoolCreateFlags::TRANSIENT);
+        // SAFETY: the device is live, here and below; what is made is dropped with `once` if a later step fails.
+        once.pool = unsafe { raw.create_command_pool(&pool, None) }
+            .map_err(failed("vkCreateCommandPool"))?;
+        let buffers = vk::CommandBufferAllocateInfo::default()
+            .command_pool(once.pool)
+            .command_buffer_count(1);
+        // SAFETY: the pool is new and ours.
+        once.cmd = unsafe { raw.allocate_command_buffers(&buffers) }
+            .map_err(failed("vkAllocateCommandBuffers"))?[0];
+        // SAFETY: as above.
+        once.fence = unsafe { raw.create_fence(&vk::FenceCreateInfo::default(), None) }
+            .map_err(failed("vkCreateFence"))?;
+        Ok(once)
+    }
+}
+
+impl Drop for OneShot<'_> {
+    fn drop(&mut self) {
+        // SAFETY: made from this device and not in use (one still in use is forgotten instead); null handles are allowed.
+        unsafe {
+            self.device.raw().destroy_fence(self.fence, None);
+            self.device.raw().destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+fn create(instance: &Instance, info: &DeviceInfo, family: u32) -> Result<ash::Device> {
+    let mut extensions = info.support.extensions();
+    // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
+    let subset = khr::portability_subset::NAME;
+    // SAFETY: the device was listed by this live instance.
+    if unsafe { has_extension(instance.raw(), info.physical, subset) } {
+        extensions.push(subset);
+    }
+    let extensions: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(family)
+        .queue_priorities(&[1.0])];
+    let create = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions);
+    let mut features = FeatureChain::new(&info.support);
+    // SAFETY: `choose` returns devices that lack nothing; `create` names the extensions and has no features yet.
+    let create = unsafe { features.chain(create) };
+    // SAFETY: the device was listed by this live instance; all that `create` points to lives through the call.
+    unsafe { instance.raw().create_device(info.physical, &create, None) }
+        .map_err(failed("vkCreateDevice"))
+}

@@ -1,0 +1,12 @@
+//! Instance, device and a picture to draw into, for those who have no engine.
+
+mod choice;
+mod device;
+mod instance;
+mod offscreen;
+mod render_pass;
+
+pub use choice::{DeviceInfo, devices};
+pub use device::Device;
+pub use instance::Instance;
+pub use offscreen::{Encoding, OffscreenTarget};

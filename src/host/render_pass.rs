@@ -1,0 +1,116 @@
+//! The render pass of an offscreen picture.
+
+use crate::error::Result;
+use crate::gpu::failed;
+use crate::gpu::ring::ring_dependency;
+use ash::vk;
+use vk::{AccessFlags as Access, ImageLayout as Layout, PipelineStageFlags as Stage};
+
+/// The formats and samples of a picture's attachments.
+#[derive(Clone, Copy)]
+pub(super) struct Formats {
+    pub(super) colour: vk::Format,
+    pub(super) depth: vk::Format,
+    pub(super) samples: vk::SampleCountFlags,
+}
+
+impl Formats {
+    /// Whether a second colour image takes the resolved picture.
+    pub(super) fn resolves(&self) -> bool {
+        self.samples != vk::SampleCountFlags::TYPE_1
+    }
+}
+
+/// One subpass over attachments 0 colour, 1 depth, 2 resolved colour if there are several samples.
+///
+/// The picture ends in `TRANSFER_SRC_OPTIMAL`, ready to be copied.
+///
+/// # Safety
+/// `device` is live and supports the formats and samples as attachments.
+pub(super) unsafe fn create(device: &ash::Device, formats: Formats) -> Result<vk::RenderPass> {
+    let mut attachments = vec![colour(formats), depth(formats)];
+    if formats.resolves() {
+        attachments.push(resolved(formats));
+    }
+    let reference = |attachment, layout| vk::AttachmentReference { attachment, layout };
+    let colours = [reference(0, Layout::COLOR_ATTACHMENT_OPTIMAL)];
+    let depth = reference(1, Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+    let resolves = [reference(2, Layout::COLOR_ATTACHMENT_OPTIMAL)];
+    let mut subpass = vk::SubpassDescription::default()
+        .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+        .color_attachments(&colours)
+        .depth_stencil_attachment(&depth);
+    if formats.resolves() {
+        subpass = subpass.resolve_attachments(&resolves);
+    }
+    let subpasses = [subpass];
+    let dependencies = [before(), ring_dependency(0), after()];
+    let info = vk::RenderPassCreateInfo::default()
+        .attachments(&attachments)
+        .subpasses(&subpasses)
+        .dependencies(&dependencies);
+    // SAFETY: the device is live and supports the attachments, by this function's contract.
+    unsafe { device.create_render_pass(&info, None) }.map_err(failed("vkCreateRenderPass"))
+}
+
+fn colour(formats: Formats) -> vk::AttachmentDescription {
+    let (store, layout) = if formats.resolves() {
+        let stays = Layout::COLOR_ATTACHMENT_OPTIMAL;
+        (vk::AttachmentStoreOp::DONT_CARE, stays)
+    } else {
+        (vk::AttachmentStoreOp::STORE, Layout::TRANSFER_SRC_OPTIMAL)
+    };
+    cleared(formats.colour, formats.samples)
+        .store_op(store)
+        .final_layout(layout)
+}
+
+fn depth(formats: Formats) -> vk::AttachmentDescription {
+    cleared(formats.depth, formats.samples)
+        .store_op(vk::AttachmentStoreOp::DONT_CARE)
+        .final_layout(Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL)
+}
+
+fn resolved(formats: Formats) -> vk::AttachmentDescription {
+    cleared(formats.colour, vk::SampleCountFlags::TYPE_1)
+        .load_op(vk::AttachmentLoadOp::DONT_CARE)
+        .store_op(vk::AttachmentStoreOp::STORE)
+        .final_layout(Layout::TRANSFER_SRC_OPTIMAL)
+}
+
+fn cleared(format: vk::Format, samples: vk::SampleCountFlags) -> vk::AttachmentDescription {
+    vk::AttachmentDescription::default()
+        .format(format)
+        .samples(samples)
+        .load_op(vk::AttachmentLoadOp::CLEAR)
+        .stencil_load_op(vk::AttachmentLoadOp::DONT_CARE)
+        .stencil_store_op(vk::AttachmentStoreOp::DONT_CARE)
+        .initial_layout(Layout::UNDEFINED)
+}
+
+/// What came before must be done: the last pass's writes, and the copy of its picture (which the transition from `UNDEFINED`
+/// would overwrite).
+fn before() -> vk::SubpassDependency {
+    let attachments =
+        Stage::COLOR_ATTACHMENT_OUTPUT | Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS;
+    let writes = Access::COLOR_ATTACHMENT_WRITE | Access::DEPTH_STENCIL_ATTACHMENT_WRITE;
+    let reads = Access::COLOR_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_READ;
+    vk::SubpassDependency::default()
+        .src_subpass(vk::SUBPASS_EXTERNAL)
+        .dst_subpass(0)
+        .src_stage_mask(attachments | Stage::TRANSFER)
+        .src_access_mask(writes)
+        .dst_stage_mask(attachments)
+        .dst_access_mask(writes | reads)
+}
+
+/// The picture, resolved or not (resolving counts as colour output), is there for the copy.
+fn after() -> vk::SubpassDependency {
+    vk::SubpassDependency::default()
+        .src_subpass(0)
+        .dst_subpass(vk::SUBPASS_EXTERNAL)
+        .src_stage_mask(Stage::COLOR_ATTACHMENT_OUTPUT)
+        .src_access_mask(Access::COLOR_ATTACHMENT_WRITE)
+        .dst_stage_mask(Stage::TRANSFER)
+        .dst_access_mask(Access::TRANSFER_READ)
+}

@@ -1,0 +1,152 @@
+// Generated from src/abi.rs; do not edit. HULLFORM_UPDATE=1 cargo test --test abi writes it anew.
+#ifndef ABI_GLSL
+#define ABI_GLSL
+
+// Set 0, binding: control vertices, three floats each, relative to the model's centre.
+const uint BINDING_POSITIONS = 0u;
+// Set 0, binding: `Patch` records.
+const uint BINDING_PATCHES = 1u;
+// Set 0, binding: the numbers of the control vertices of each patch.
+const uint BINDING_CONTROLS = 2u;
+// Set 0, binding: texture coordinates, four a patch.
+const uint BINDING_TEXTURE = 3u;
+// Set 0, binding: the scratch ring, one vec4 a point.
+const uint BINDING_SCRATCH = 4u;
+// Set 0, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
+const uint BINDING_COUNTERS = 5u;
+// Set 0, binding: where each patch's slot begins, when the host allocates.
+const uint BINDING_SLOTS = 6u;
+// Set 0, binding: the number of captured vertices, then the `Captured` records.
+const uint BINDING_CAPTURE = 7u;
+// Set 0, binding: the first of a method's own tables.
+const uint BINDING_TABLES = 8u;
+// How many tables a method may have of its own.
+const uint TABLES = 4u;
+// Invocations of a control shader that runs stencils; also its greatest number of control points.
+const uint CONTROL_INVOCATIONS = 32u;
+// The deepest level of a plan.
+const uint HIGHEST_LEVEL = 10u;
+// Stencils in front of a plan that belong to its corners: position and two tangents each.
+const uint CORNER_STENCILS = 12u;
+// Node kind: has four children.
+const uint NODE_INTERNAL = 0u;
+// Node kind: a B-spline.
+const uint NODE_REGULAR = 1u;
+// Node kind: a B-spline with mirrored control points.
+const uint NODE_BOUNDARY = 2u;
+// Node kind: a B-spline with one semi-sharp crease.
+const uint NODE_CREASE = 3u;
+// Node kind: levels around an extraordinary vertex.
+const uint NODE_TERMINAL = 4u;
+// Node kind: an extraordinary vertex.
+const uint NODE_EXTRAORDINARY = 5u;
+// Points in a level of a terminal node.
+const uint TERMINAL_POINTS = 25u;
+// Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
+const uint PATCH_EVEN_EDGE = 1u;
+// Patch flag: part of an n-gon, with half the tess level of a quad.
+const uint PATCH_HALF = 16u;
+// Patch flag: where the corner of the ptex face that is corner 0 of the patch stands; two bits.
+const uint PATCH_TURN_SHIFT = 5u;
+// Frame flag: spacing is fractional-even, else equal.
+const uint FRAME_FRACTIONAL_EVEN = 1u;
+// Frame flag: slots come from the host, else from the batch's counter.
+const uint FRAME_HOST_SLOTS = 2u;
+// Frame flag: the evaluation shader records what it produces.
+const uint FRAME_CAPTURE = 4u;
+// Counter: patches that found no room in the ring and were not drawn.
+const uint COUNTER_OVERFLOWS = 0u;
+// Counter: points computed, over all batches.
+const uint COUNTER_POINTS = 1u;
+// Counter: the first batch's allocation.
+const uint COUNTER_BATCHES = 2u;
+// Shading: lit.
+const uint SHADING_LIT = 0u;
+// Shading: the normal as a colour.
+const uint SHADING_NORMAL = 1u;
+// Shading: a colour a patch.
+const uint SHADING_PATCH = 2u;
+// Shading: a colour a node kind, as in the figures of Brainerd et al. 2016.
+const uint SHADING_NODE = 3u;
+// Shading: the valence of the nearest corner.
+const uint SHADING_VALENCE = 4u;
+// Shading: one dark colour, for lines.
+const uint SHADING_LINES = 5u;
+
+// A patch: a quad, or the part of an n-gon at one of its corners.
+struct Patch {
+    // Its ptex face.
+    uint ptex;
+    // `PATCH_...` flags.
+    uint flags;
+    // Where its control vertices begin.
+    uint controls;
+    // Its plan, or whatever the method keeps for it.
+    uint plan;
+    // The valences of its four corners, a byte each, 255 for more.
+    uint valences;
+};
+
+// A plan: where its parts begin, and how many stencils each level needs.
+struct PlanHeader {
+    // Vertices of the 1-ring.
+    uint ring_size;
+    // Where its weights begin, `ring_size` a stencil.
+    uint weights;
+    // Its root.
+    uint root;
+    // Its deepest level.
+    uint max_level;
+    // The number of stencils needed at level 0..=10; beyond the deepest level as there.
+    uint counts[11];
+};
+
+// A node of a quadtree.
+struct Node {
+    // `NODE_...`, then the corner or edge << 4, then the number of levels << 8.
+    uint kind;
+    // Internal: the first child. Otherwise where its points begin, counted in 16-bit halves.
+    uint points;
+    // What is left of the sharpness of a crease.
+    float sharpness;
+};
+
+// What changes from draw to draw; push constants.
+struct Frame {
+    // From model space, relative to the model's centre, to clip space.
+    mat4 view_projection;
+    // The eye in model space.
+    vec3 eye;
+    // `SHADING_...`
+    uint shading;
+    // The tess level of a quad, 1..=64.
+    float level;
+    // `FRAME_...` flags.
+    uint flags;
+    // The first patch of the draw.
+    uint first_patch;
+    // The patch behind the last of the draw.
+    uint end_patch;
+    // Patches an instance.
+    uint patches_per_instance;
+    // Points that the ring holds.
+    uint ring_points;
+    // The batch's counter.
+    uint counter;
+    // Vertices that the capture holds.
+    uint capture_vertices;
+};
+
+// A vertex as an evaluation shader produced it.
+struct Captured {
+    // The patch.
+    uint patch_number;
+    // Where in the patch's own domain.
+    vec2 uv;
+    // Position relative to the model's centre.
+    vec3 position;
+    // Unit normal.
+    vec3 normal;
+};
+
+#endif

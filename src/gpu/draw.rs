@@ -1,0 +1,268 @@
+//! Recording: upload, preparation of a frame, draws, and reading back what was counted.
+
+use ash::vk;
+use gpu_allocator::vulkan::Allocator;
+
+use crate::abi;
+use crate::gpu::batches::{Batch, Cut};
+use crate::gpu::layout::STAGES;
+use crate::gpu::ring::{RING_ACCESS, RING_STAGES, cmd_ring_barrier};
+use crate::gpu::surface::{Slots, TessellatedSurface};
+use crate::gpu::workaround::patches_per_instance;
+use crate::gpu::{Layout, Pipelines};
+use crate::tessellation::Spacing;
+
+/// What the control shaders counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Patches that found no room in the ring and were left out: the picture is not whole, draw again with [`Slots::Host`].
+    pub overflows: u32,
+    /// Points computed.
+    pub points: u32,
+}
+
+/// What a frame is drawn with, the same for all of its batches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From model space, relative to the model's centre, to Vulkan's clip space; column by column.
+    pub clip_from_model: [[f32; 4]; 4],
+    /// The eye in model space.
+    pub eye: [f32; 3],
+    /// One of `abi::SHADING_...`.
+    pub shading: u32,
+}
+
+impl TessellatedSurface {
+    /// Records the copy of everything to the device.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass.
+    pub unsafe fn cmd_upload(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        let Some((staging, copies)) = self.buffers.uploads() else {
+            return;
+        };
+        for (buffer, copy) in copies {
+            // SAFETY: the copies were made with the buffers' sizes.
+            unsafe { device.cmd_copy_buffer(cmd, staging, buffer, &[copy]) };
+        }
+        let stages = vk::PipelineStageFlags::VERTEX_SHADER
+            | RING_STAGES
+            | vk::PipelineStageFlags::FRAGMENT_SHADER;
+        // SAFETY: this function's contract.
+        unsafe {
+            cmd_make_visible(
+                device,
+                cmd,
+                vk::PipelineStageFlags::TRANSFER,
+                stages,
+                vk::AccessFlags::SHADER_READ,
+            )
+        };
+    }
+
+    /// Gives the staging memory back. Positions cannot be replaced after this.
+    ///
+    /// # Safety
+    /// `device` and `allocator` made this surface, and the upload has been executed.
+    pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut Allocator) {
+        if let Some(staging) = self.buffers.take_staging() {
+            // SAFETY: this function's contract.
+            unsafe { staging.destroy(device, allocator) };
+        }
+    }
+
+    /// Records what a frame needs before its render pass: counters at zero, and the ring free of earlier frames' use.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass.
+    pub unsafe fn cmd_prepare(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        let transfer = vk::PipelineStageFlags::TRANSFER;
+        // SAFETY: this function's contract; vkCmdFillBuffer is not allowed inside a render pass, hence this function.
+        unsafe {
+            cmd_make_visible(
+                device,
+                cmd,
+                RING_STAGES | transfer,
+                transfer,
+                vk::AccessFlags::TRANSFER_WRITE,
+            );
+            device.cmd_fill_buffer(cmd, self.buffers.counters().raw(), 0, vk::WHOLE_SIZE, 0);
+            device.cmd_fill_buffer(cmd, self.buffers.capture().raw(), 0, 4, 0);
+            cmd_make_visible(
+                device,
+                cmd,
+                transfer | RING_STAGES,
+                RING_STAGES,
+                RING_ACCESS,
+            );
+        }
+    }
+
+    /// Records the draw of a batch. A batch that uses the ring after another waits for that one's evaluation shaders.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this surface, inside subpass 0 of the render pass of `pipelines`, after
+    /// [`cmd_prepare`](Self::cmd_prepare); viewport and scissor are set; `pipelines` were built for the spacing of `cut`, and `batch` is one
+    /// of [`batches`](Self::batches) for `cut`. The batches of a frame are recorded in their order. With [`Slots::Host`],
+    /// [`write_slots`](Self::write_slots) was called for them.
+    #[allow(clippy::too_many_arguments)]
+    pub unsafe fn cmd_draw(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipelines: &Pipelines,
+        view: &View,
+        cut: Cut,
+        batch: &Batch,
+    ) {
+        let pass = &self.prepared.passes[batch.pass];
+        let count = batch.end - batch.first;
+        let per_instance = self
+            .patches_per_instance(cut, batch)
+            .unwrap_or(count)
+            .min(count);
+        let frame = self.frame(view, cut, batch, per_instance);
+        let graphics = vk::PipelineBindPoint::GRAPHICS;
+        let sets = [self.sets[batch.pass]];
+        // SAFETY: this function's contract.
+        unsafe {
+            if batch.ring_batch > 0 && batch.points > 0 {
+                cmd_ring_barrier(device, cmd);
+            }
+            device.cmd_bind_pipeline(cmd, graphics, pipelines.get(batch.pass));
+            device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
+            device.cmd_push_constants(
+                cmd,
+                layout.pipeline(),
+                STAGES,
+                0,
+                bytemuck::bytes_of(&frame),
+            );
+            device.cmd_draw(
+                cmd,
+                per_instance * pass.control_points,
+                count.div_ceil(per_instance),
+                0,
+                0,
+            );
+        }
+    }
+
+    /// How many patches an instance may hold on this driver; None where nothing bounds it.
+    fn patches_per_instance(&self, cut: Cut, batch: &Batch) -> Option<u32> {
+        let pass = &self.prepared.passes[batch.pass];
+        let greatest =
+            (batch.first..batch.end).map(|patch| cut.levels(pass, patch as usize).greatest());
+        let segments = cut.spacing.segments(greatest.fold(1.0, f32::max));
+        patches_per_instance(&self.workarounds, segments)
+    }
+
+    fn frame(&self, view: &View, cut: Cut, batch: &Batch, patches_per_instance: u32) -> abi::Frame {
+        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+        abi::Frame {
+            view_projection: view.clip_from_model,
+            eye: view.eye,
+            shading: view.shading,
+            level: cut.level,
+            flags: flag(
+                cut.spacing == Spacing::FractionalEven,
+                abi::FRAME_FRACTIONAL_EVEN,
+            ) | flag(self.options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
+                | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE),
+            first_patch: batch.first,
+            end_patch: batch.end,
+            patches_per_instance,
+            ring_points: (self.options.ring_bytes / 16).min(u64::from(u32::MAX / 2)) as u32,
+            counter: abi::COUNTER_BATCHES + batch.ring_batch,
+            capture_vertices: self.options.capture_vertices,
+        }
+    }
+
+    /// Records the copy of what was counted and captured to where the host can read it.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, after the draws.
+    pub unsafe fn cmd_read_back(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        let copy = vk::BufferCopy::default().size(8);
+        let (transfer, host) = (
+            vk::PipelineStageFlags::TRANSFER,
+            vk::PipelineStageFlags::HOST,
+        );
+        // SAFETY: this function's contract.
+        unsafe {
+            cmd_make_visible(
+                device,
+                cmd,
+                RING_STAGES,
+                transfer,
+                vk::AccessFlags::TRANSFER_READ,
+            );
+            device.cmd_copy_buffer(
+                cmd,
+                self.buffers.counters().raw(),
+                self.buffers.counted().raw(),
+                &[copy],
+            );
+            cmd_make_visible(
+                device,
+                cmd,
+                transfer | RING_STAGES,
+                host,
+                vk::AccessFlags::HOST_READ,
+            );
+        }
+    }
+
+    /// What was counted. Meaningful when [`cmd_read_back`](Self::cmd_read_back) has been executed.
+    pub fn counters(&self) -> Counters {
+        let counted: &[u32] = bytemuck::cast_slice(self.buffers.counted().bytes());
+        Counters {
+            overflows: counted[abi::COUNTER_OVERFLOWS as usize],
+            points: counted[abi::COUNTER_POINTS as usize],
+        }
+    }
+
+    /// What was captured since [`cmd_prepare`](Self::cmd_prepare), in no order, and possibly some vertices more than once. Meaningful
+    /// when [`cmd_read_back`](Self::cmd_read_back) has been executed.
+    pub fn captured(&self) -> &[abi::Captured] {
+        let (count, captured) = self.buffers.capture().bytes().split_at(4);
+        let count = bytemuck::pod_read_unaligned::<u32>(count).min(self.options.capture_vertices);
+        &bytemuck::cast_slice(captured)[..count as usize]
+    }
+}
+
+/// A barrier from all writes of the stages `from` to `access` in the stages `to`.
+///
+/// # Safety
+/// `cmd` is recording on `device`, outside of a render pass.
+unsafe fn cmd_make_visible(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    from: vk::PipelineStageFlags,
+    to: vk::PipelineStageFlags,
+    access: vk::AccessFlags,
+) {
+    let mut written = vk::AccessFlags::empty();
+    if from.contains(vk::PipelineStageFlags::TRANSFER) {
+        written |= vk::AccessFlags::TRANSFER_WRITE;
+    }
+    if from.intersects(RING_STAGES) {
+        written |= vk::AccessFlags::SHADER_WRITE;
+    }
+    let barrier = vk::MemoryBarrier::default()
+        .src_access_mask(written)
+        .dst_access_mask(access);
+    // SAFETY: this function's contract.
+    unsafe {
+        device.cmd_pipeline_barrier(
+            cmd,
+            from,
+            to,
+            vk::DependencyFlags::empty(),
+            &[barrier],
+            &[],
+            &[],
+        )
+    };
+}

@@ -1,0 +1,85 @@
+//! The one descriptor set and the push constants that all shaders share.
+
+use ash::vk;
+
+use crate::abi;
+use crate::error::Result;
+use crate::gpu::failed;
+
+/// How many bindings set 0 has.
+pub(crate) const BINDINGS: u32 = abi::BINDING_TABLES + abi::TABLES;
+
+/// Stages that see set 0 and the push constants.
+pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw()
+        | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
+        | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
+        | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
+
+/// The layout of set 0 and of the pipelines. An engine that brings shaders of its own builds its pipelines with it.
+#[derive(Debug)]
+pub struct Layout {
+    set: vk::DescriptorSetLayout,
+    pipeline: vk::PipelineLayout,
+}
+
+impl Layout {
+    /// Makes the layouts: storage buffers at every binding of `abi`, and an [`abi::Frame`] of push constants.
+    ///
+    /// # Safety
+    /// `device` is live.
+    pub unsafe fn new(device: &ash::Device) -> Result<Layout> {
+        let bindings: Vec<vk::DescriptorSetLayoutBinding> = (0..BINDINGS)
+            .map(|binding| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(binding)
+                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                    .descriptor_count(1)
+                    .stage_flags(STAGES)
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the device is live; the info's pointers live through the call.
+        let set = unsafe { device.create_descriptor_set_layout(&info, None) }
+            .map_err(failed("vkCreateDescriptorSetLayout"))?;
+        let sets = [set];
+        let constants = [vk::PushConstantRange::default()
+            .stage_flags(STAGES)
+            .size(size_of::<abi::Frame>() as u32)];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&sets)
+            .push_constant_ranges(&constants);
+        // SAFETY: as above; `set` was just made from this device.
+        match unsafe { device.create_pipeline_layout(&info, None) } {
+            Ok(pipeline) => Ok(Layout { set, pipeline }),
+            Err(code) => {
+                // SAFETY: `set` is ours and nothing uses it.
+                unsafe { device.destroy_descriptor_set_layout(set, None) };
+                Err(failed("vkCreatePipelineLayout")(code))
+            }
+        }
+    }
+
+    /// The layout of set 0.
+    pub fn set(&self) -> vk::DescriptorSetLayout {
+        self.set
+    }
+
+    /// The layout of the pipelines.
+    pub fn pipeline(&self) -> vk::PipelineLayout {
+        self.pipeline
+    }
+
+    /// Destroys both.
+    ///
+    /// # Safety
+    /// `device` made them, and nothing that was made with them is recorded any more.
+    pub unsafe fn destroy(self, device: &ash::Device) {
+        // SAFETY: this function's contract.
+        unsafe {
+            device.destroy_pipeline_layout(self.pipeline, None);
+            device.destroy_descriptor_set_layout(self.set, None);
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! Pipelines: one a pass, from the method's modules.
+
+use ash::vk;
+
+use crate::error::{Error, Result};
+use crate::gpu::{Layout, failed, shaders};
+use crate::method::Prepared;
+use crate::tessellation::Spacing;
+
+/// What pipelines draw into.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// The render pass; its subpass 0 has one colour attachment and depth, and the dependency of [`ring_dependency`](super::ring::ring_dependency).
+    pub render_pass: vk::RenderPass,
+    /// Its samples a pixel.
+    pub samples: vk::SampleCountFlags,
+}
+
+/// What becomes of the triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// They are filled.
+    Solid,
+    /// Their edges are drawn, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
+    Lines,
+    /// Nothing: only what the evaluation shader captures counts.
+    Discard,
+}
+
+/// The pipelines of a prepared model, one a pass, for one spacing.
+#[derive(Debug)]
+pub struct Pipelines {
+    pipelines: Vec<vk::Pipeline>,
+}
+
+impl Pipelines {
+    /// Builds the pipelines of every pass.
+    ///
+    /// # Safety
+    /// `device` is live and has the features that [`Support`](super::Support) asks for; `layout`, `cache` and `target` are of this device.
+    pub unsafe fn new(
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+        prepared: &Prepared,
+        target: Target,
+        spacing: Spacing,
+        fill: Fill,
+    ) -> Result<Pipelines> {
+        let mut pipelines = Pipelines {
+            pipelines: Vec::new(),
+        };
+        for pass in &prepared.passes {
+            let modules = Modules::of(pass.shader, spacing)?;
+            let plan = PipelinePlan {
+                control_points: pass.control_points,
+                target,
+                fill,
+            };
+            // SAFETY: this function's contract.
+            match unsafe { plan.build(device, layout, cache, &modules) } {
+                Ok(pipeline) => pipelines.pipelines.push(pipeline),
+                Err(error) => {
+                    // SAFETY: nothing has used them.
+                    unsafe { pipelines.destroy(device) };
+                    return Err(error);
+                }
+            }
+        }
+        Ok(pipelines)
+    }
+
+    /// The pipeline of a pass.
+    pub fn get(&self, pass: usize) -> vk::Pipeline {
+        self.pipelines[pass]
+    }
+
+    /// Destroys them.
+    ///
+    /// # Safety
+    /// `device` made them, and no submitted command still uses them.
+    pub unsafe fn destroy(self, device: &ash::Device) {
+        for pipeline in self.pipelines {
+            // SAFETY: this function's contract.
+            unsafe { device.destroy_pipeline(pipeline, None) };
+        }
+    }
+}
+
+/// The words of a method's four stages.
+struct Modules([(vk::ShaderStageFlags, &'static [u32]); 4]);
+
+impl Modules {
+    fn of(method: &str, spacing: Spacing) -> Result<Modules> {
+        let find = |ending: String| {
+            let name = format!("{method}.{ending}");
+            shaders::spirv(&name)
+                .ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))
+        };
+        Ok(Modules([
+            (vk::ShaderStageFlags::VERTEX, find("vert".into())?),
+            (
+                vk::ShaderStageFlags::TESSELLATION_CONTROL,
+                find("tesc".into())?,
+            ),
+            (
+                vk::ShaderStageFlags::TESSELLATION_EVALUATION,
+                find(format!("{}.tese", spacing.name()))?,
+            ),
+            (vk::ShaderStageFlags::FRAGMENT, find("frag".into())?),
+        ]))
+    }
+}
+
+/// What a pipeline is made of, its shaders aside.
+struct PipelinePlan {
+    control_points: u32,
+    target: Target,
+    fill: Fill,
+}
+
+impl PipelinePlan {
+    /// # Safety
+    /// As [`Pipelines::new`].
+    unsafe fn build(
+        &self,
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+        modules: &Modules,
+    ) -> Result<vk::Pipeline> {
+        let mut made = Vec::new();
+        let mut problem = None;
+        // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours).
+        let count = if self.fill == Fill::Discard { 3 } else { 4 };
+        for &(stage, words) in &modules.0[..count] {
+            let info = vk::ShaderModuleCreateInfo::default().code(words);
+            // SAFETY: the words are a valid module; the tests validate every one.
+            match unsafe { device.create_shader_module(&info, None) } {
+                Ok(module) => made.push((stage, module)),
+                Err(code) => problem = Some(failed("vkCreateShaderModule")(code)),
+            }
+        }
+        let pipeline = match problem {
+            Some(problem) => Err(problem),
+            // SAFETY: this function's contract.
+            None => unsafe { self.assemble(device, layout, cache, &made) },
+        };
+        for (_, module) in made {
+            // SAFETY: modules are not needed once the pipeline is there.
+            unsafe { device.destroy_shader_module(module, None) };
+        }
+        pipeline
+    }
+
+    /// # Safety
+    /// As [`Pipelines::new`]; the modules are of this device.
+    unsafe fn assemble(
+        &self,
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+        modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
+    ) -> Result<vk::Pipeline> {
+        let stages: Vec<vk::PipelineShaderStageCreateInfo> = modules
+            .iter()
+            .map(|&(stage, module)| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(stage)
+                    .module(module)
+                    .name(c"main")
+            })
+            .collect();
+        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::PATCH_LIST);
+        let tessellation = vk::PipelineTessellationStateCreateInfo::default()
+            .patch_control_points(self.control_points);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let rasterization = self.rasterization();
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(self.target.samples);
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(true)
+            .depth_write_enable(true)
+            .depth_compare_op(vk::CompareOp::LESS_OR_EQUAL);
+        let colour = [vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colour);
+        let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertex_input)
+            .input_assembly_state(&assembly)
+            .tessellation_state(&tessellation)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(layout.pipeline())
+            .render_pass(self.target.render_pass);
+        // SAFETY: everything that the info points to lives through the call and is of this device.
+        let made = unsafe { device.create_graphics_pipelines(cache, &[info], None) };
+        made.map(|pipelines| pipelines[0])
+            .map_err(|(_, code)| failed("vkCreateGraphicsPipelines")(code))
+    }
+
+    fn rasterization(&self) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+        let lines = self.fill == Fill::Lines;
+        vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(if lines {
+                vk::PolygonMode::LINE
+            } else {
+                vk::PolygonMode::FILL
+            })
+            .rasterizer_discard_enable(self.fill == Fill::Discard)
+            .cull_mode(vk::CullModeFlags::NONE)
+            .depth_bias_enable(lines)
+            .depth_bias_constant_factor(if lines { -1.0 } else { 0.0 })
+            .depth_bias_slope_factor(if lines { -1.0 } else { 0.0 })
+            .line_width(1.0)
+    }
+}

@@ -1,0 +1,113 @@
+//! Tess levels of a patch, a function of its edges alone on each edge. Twin of `glsl/lib/levels.glsl`.
+
+use crate::abi;
+
+/// Vulkan's spacing modes that keep vertices away from corners. Fractional-odd does not (see Brainerd et al. 2016, section 9.7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Spacing {
+    /// Whole levels, equal steps.
+    #[default]
+    Equal,
+    /// Any level; two short steps grow as the level does.
+    FractionalEven,
+}
+
+impl Spacing {
+    /// The number of segments that the tessellator makes of an edge of this level (Vulkan spec, "Tessellator Spacing").
+    pub fn segments(self, level: f32) -> u32 {
+        match self {
+            Spacing::Equal => level.clamp(1.0, 64.0).ceil() as u32,
+            Spacing::FractionalEven => 2 * (level.clamp(2.0, 64.0) / 2.0).ceil() as u32,
+        }
+    }
+
+    /// The name of the shader module's variant.
+    pub fn name(self) -> &'static str {
+        match self {
+            Spacing::Equal => "equal",
+            Spacing::FractionalEven => "fractional-even",
+        }
+    }
+}
+
+/// Tess levels of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Of the edges from corner i to corner i + 1.
+    pub edges: [f32; 4],
+    /// Of the inside, in both directions.
+    pub inside: f32,
+}
+
+/// The levels of a patch when quads have `level`, 1..=2^`max_level` and at most 64.
+///
+/// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
+/// fractional-even (Brainerd et al. 2016, section 7.2).
+pub fn levels(patch: &abi::Patch, level: f32, spacing: Spacing, max_level: u32) -> Levels {
+    let level = level.clamp(1.0, (1u32 << max_level).min(64) as f32);
+    let half = match spacing {
+        Spacing::Equal => (level * 0.5).ceil(),
+        Spacing::FractionalEven => 2.0 * (level * 0.25).ceil(),
+    };
+    if patch.flags & abi::PATCH_HALF != 0 {
+        return Levels {
+            edges: [half; 4],
+            inside: half,
+        };
+    }
+    let even = |edge: u32| patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
+    Levels {
+        edges: [0, 1, 2, 3].map(|edge| if even(edge) { 2.0 * half } else { level }),
+        inside: level,
+    }
+}
+
+impl Levels {
+    /// The greatest of all.
+    pub fn greatest(&self) -> f32 {
+        self.edges.iter().copied().fold(self.inside, f32::max)
+    }
+
+    /// The vertices that the tessellator makes of a patch (Vulkan spec, "Quad Tessellation").
+    pub fn vertices(&self, spacing: Spacing) -> u32 {
+        let outer = self.edges.map(|level| spacing.segments(level));
+        let inside = self.inside_segments(spacing);
+        if inside == 1 {
+            4
+        } else {
+            outer.iter().sum::<u32>() + (inside - 1) * (inside - 1)
+        }
+    }
+
+    /// The triangles that the tessellator makes of a patch.
+    pub fn triangles(&self, spacing: Spacing) -> u32 {
+        let outer: u32 = self
+            .edges
+            .iter()
+            .map(|&level| spacing.segments(level))
+            .sum();
+        let inside = self.inside_segments(spacing);
+        if inside == 1 {
+            2
+        } else {
+            outer + 4 * (inside - 2) + 2 * (inside - 2) * (inside - 2)
+        }
+    }
+
+    /// An inside level of 1 counts as just over 1 unless all levels are 1.
+    fn inside_segments(&self, spacing: Spacing) -> u32 {
+        let inside = spacing.segments(self.inside);
+        if inside == 1 && self.edges.iter().any(|&level| spacing.segments(level) > 1) {
+            2
+        } else {
+            inside
+        }
+    }
+}
+
+/// The plan level that tess levels need: ceil(log2 of the greatest), at most `max_level`.
+pub fn required_level(levels: &Levels, max_level: u32) -> u32 {
+    (0..max_level)
+        .find(|&level| (1u32 << level) as f32 >= levels.greatest())
+        .unwrap_or(max_level)
+}

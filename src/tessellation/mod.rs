@@ -1,0 +1,7 @@
+//! Tess levels that agree on every edge, what the tessellator makes of them, and triangles from its vertices.
+
+mod levels;
+mod triangulate;
+
+pub use levels::{Levels, Spacing, levels, required_level};
+pub use triangulate::triangulate;

@@ -1,0 +1,174 @@
+//! Triangles from the vertices that the tessellator made of a patch.
+//!
+//! Vulkan fixes where the vertices lie but not how they are joined between the outer edges and the inside. This joins them by walking both
+//! sides of that gap together. The inside is a full grid.
+
+use std::cmp::Ordering;
+
+/// The triangles of a quad patch, counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order.
+///
+/// The outer edges may have different numbers of vertices; those inside must form a grid.
+pub fn triangulate(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+    let is_edge = |x: f32| x == 0.0 || x == 1.0;
+    let inside: Vec<u32> = numbers(uv, |[u, v]| !is_edge(u) && !is_edge(v));
+    let rows = rows(uv, inside);
+    let mut triangles = grid(&rows);
+    for side in 0..4 {
+        let outer = numbers(uv, |at| turned(at, side)[1] == 0.0);
+        let inner = inner_side(&rows, side);
+        stitch(
+            uv,
+            side,
+            sorted(uv, outer, side),
+            sorted(uv, inner, side),
+            &mut triangles,
+        );
+    }
+    if rows.is_empty() {
+        // All levels 1: the four corners.
+        let corner = |u, v| numbers(uv, |at| at == [u, v])[0];
+        let [a, b, c, d] = [
+            corner(0.0, 0.0),
+            corner(1.0, 0.0),
+            corner(1.0, 1.0),
+            corner(0.0, 1.0),
+        ];
+        triangles = vec![[a, b, c], [a, c, d]];
+    }
+    triangles
+}
+
+fn numbers(uv: &[[f32; 2]], choose: impl Fn([f32; 2]) -> bool) -> Vec<u32> {
+    (0..uv.len() as u32)
+        .filter(|&i| choose(uv[i as usize]))
+        .collect()
+}
+
+/// (u, v) as seen with the given side of the square turned down: side 0 is v = 0, 1 is u = 1, 2 is v = 1, 3 is u = 0.
+fn turned([u, v]: [f32; 2], side: usize) -> [f32; 2] {
+    match side {
+        0 => [u, v],
+        1 => [v, 1.0 - u],
+        2 => [1.0 - u, 1.0 - v],
+        _ => [1.0 - v, u],
+    }
+}
+
+fn sorted(uv: &[[f32; 2]], mut vertices: Vec<u32>, side: usize) -> Vec<u32> {
+    vertices.sort_by(|&a, &b| {
+        order(
+            turned(uv[a as usize], side)[0],
+            turned(uv[b as usize], side)[0],
+        )
+    });
+    vertices
+}
+
+fn order(a: f32, b: f32) -> Ordering {
+    a.partial_cmp(&b).expect("tess coordinates are numbers")
+}
+
+/// The inside vertices row by row, each sorted by u.
+fn rows(uv: &[[f32; 2]], mut inside: Vec<u32>) -> Vec<Vec<u32>> {
+    let side = (inside.len() as f64).sqrt().round() as usize;
+    inside.sort_by(|&a, &b| order(uv[a as usize][1], uv[b as usize][1]));
+    let rows = inside
+        .chunks(side.max(1))
+        .map(|row| sorted(uv, row.to_vec(), 0));
+    rows.collect()
+}
+
+fn grid(rows: &[Vec<u32>]) -> Vec<[u32; 3]> {
+    let mut triangles = Vec::new();
+    for pair in rows.windows(2) {
+        for (low, high) in pair[0].windows(2).zip(pair[1].windows(2)) {
+            triangles.push([low[0], low[1], high[1]]);
+            triangles.push([low[0], high[1], high[0]]);
+        }
+    }
+    triangles
+}
+
+/// The inside vertices next to a side.
+fn inner_side(rows: &[Vec<u32>], side: usize) -> Vec<u32> {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+        return Vec::new();
+    };
+    match side {
+        0 => first.clone(),
+        1 => rows.iter().map(|row| row[row.len() - 1]).collect(),
+        2 => last.clone(),
+        _ => rows.iter().map(|row| row[0]).collect(),
+    }
+}
+
+/// Fills the gap between a side and the inside, always advancing where the next vertex is nearer.
+fn stitch(
+    uv: &[[f32; 2]],
+    side: usize,
+    outer: Vec<u32>,
+    inner: Vec<u32>,
+    triangles: &mut Vec<[u32; 3]>,
+) {
+    if inner.is_empty() {
+        return;
+    }
+    let along = |vertex: u32| turned(uv[vertex as usize], side)[0];
+    let (mut i, mut j) = (0, 0);
+    while i + 1 < outer.len() || j + 1 < inner.len() {
+        let next_outer = outer
+            .get(i + 1)
+            .map_or(f32::INFINITY, |&vertex| along(vertex));
+        let next_inner = inner
+            .get(j + 1)
+            .map_or(f32::INFINITY, |&vertex| along(vertex));
+        if next_outer <= next_inner {
+            triangles.push([outer[i], outer[i + 1], inner[j]]);
+            i += 1;
+        } else {
+            triangles.push([outer[i], inner[j + 1], inner[j]]);
+            j += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The vertices of a patch with the given segments on its edges and inside.
+    fn vertices(edges: [u32; 4], inside: u32) -> Vec<[f32; 2]> {
+        let at = |i: u32, n: u32| i as f32 / n as f32;
+        let mut uv: Vec<[f32; 2]> = (1..inside)
+            .flat_map(|y| (1..inside).map(move |x| [at(x, inside), at(y, inside)]))
+            .collect();
+        uv.extend((0..edges[0]).map(|i| [at(i, edges[0]), 0.0]));
+        uv.extend((0..edges[1]).map(|i| [1.0, at(i, edges[1])]));
+        uv.extend((0..edges[2]).map(|i| [1.0 - at(i, edges[2]), 1.0]));
+        uv.extend((0..edges[3]).map(|i| [0.0, 1.0 - at(i, edges[3])]));
+        uv
+    }
+
+    #[test]
+    fn triangles_cover_the_square_once() {
+        for (edges, inside) in [
+            ([1; 4], 1),
+            ([2; 4], 2),
+            ([4, 2, 3, 1], 2),
+            ([6, 5, 5, 6], 5),
+            ([64, 1, 2, 64], 33),
+        ] {
+            let uv = vertices(edges, inside);
+            let area = |[a, b, c]: [u32; 3]| {
+                let [a, b, c] = [a, b, c].map(|i| glam::Vec2::from(uv[i as usize]).as_dvec2());
+                0.5 * (b - a).perp_dot(c - a)
+            };
+            let areas: Vec<f64> = triangulate(&uv).into_iter().map(area).collect();
+            assert!(areas.iter().all(|&area| area > 0.0), "{edges:?} {inside}");
+            assert!(
+                (areas.iter().sum::<f64>() - 1.0).abs() < 1e-6,
+                "{edges:?} {inside}"
+            );
+        }
+    }
+}

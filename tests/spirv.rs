@@ -4,7 +4,7 @@
 
 #![cfg(feature = "vulkan")]
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -115,48 +115,52 @@ enum Fact {
     EntryPoint(u32, String),
     /// Execution mode and its operands: patch size, spacing, local size.
     Mode(Vec<u32>),
-    /// What decorates one variable, constant or block: binding, location, offsets of members.
+    /// What decorates a variable, constant or block: storage class, binding, location, offsets.
     Decorations(Vec<Vec<u32>>),
 }
 
-/// What pipelines see of a module, in no order and without the compiler's own numbering.
-fn interface(bytes: &[u8]) -> BTreeSet<Fact> {
+/// What pipelines see of a module, sorted and without the compiler's own numbering.
+fn interface(bytes: &[u8]) -> Vec<Fact> {
     const ENTRY_POINT: u32 = 15;
     const EXECUTION_MODE: u32 = 16;
+    const VARIABLE: u32 = 59;
     const DECORATE: u32 = 71;
     const MEMBER_DECORATE: u32 = 72;
-    let mut facts = BTreeSet::new();
-    let mut decorations: std::collections::BTreeMap<u32, Vec<Vec<u32>>> = Default::default();
+    let mut facts = Vec::new();
+    let mut decorations: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
     for instruction in instructions(bytes) {
         let operands = &instruction[1..];
         match instruction[0] & 0xffff {
             ENTRY_POINT => {
                 let name = operands[2..].iter().flat_map(|word| word.to_le_bytes());
                 let name = name.take_while(|byte| *byte != 0).map(char::from).collect();
-                facts.insert(Fact::EntryPoint(operands[0], name));
+                facts.push(Fact::EntryPoint(operands[0], name));
             }
             EXECUTION_MODE => {
-                facts.insert(Fact::Mode(operands[1..].to_vec()));
+                facts.push(Fact::Mode(operands[1..].to_vec()));
             }
             DECORATE if seen_from_outside(operands[1]) => {
-                decorations
-                    .entry(operands[0])
-                    .or_default()
-                    .push(operands[1..].to_vec());
+                let list = decorations.entry(operands[0]).or_default();
+                list.push(operands[1..].to_vec());
             }
             MEMBER_DECORATE if seen_from_outside(operands[2]) => {
-                decorations
-                    .entry(operands[0])
-                    .or_default()
-                    .push(operands[1..].to_vec());
+                let list = decorations.entry(operands[0]).or_default();
+                list.push(operands[1..].to_vec());
+            }
+            // Decorations come before variables; the storage class tells inputs from outputs.
+            VARIABLE => {
+                if let Some(list) = decorations.get_mut(&operands[1]) {
+                    list.push(vec![operands[2]]);
+                }
             }
             _ => {}
         }
     }
     for mut list in decorations.into_values() {
         list.sort();
-        facts.insert(Fact::Decorations(list));
+        facts.push(Fact::Decorations(list));
     }
+    facts.sort();
     facts
 }
 
@@ -165,43 +169,26 @@ fn seen_from_outside(decoration: u32) -> bool {
     const SPEC_ID: u32 = 1;
     const BUILT_IN: u32 = 11;
     const PATCH: u32 = 15;
-    const LOCATION: u32 = 30;
-    const COMPONENT: u32 = 31;
-    const BINDING: u32 = 33;
-    const DESCRIPTOR_SET: u32 = 34;
-    const OFFSET: u32 = 35;
-    [
-        SPEC_ID,
-        BUILT_IN,
-        PATCH,
-        LOCATION,
-        COMPONENT,
-        BINDING,
-        DESCRIPTOR_SET,
-        OFFSET,
-    ]
-    .contains(&decoration)
+    const LOCATION_AND_COMPONENT: std::ops::RangeInclusive<u32> = 30..=31;
+    const BINDING_SET_AND_OFFSET: std::ops::RangeInclusive<u32> = 33..=35;
+    matches!(decoration, SPEC_ID | BUILT_IN | PATCH)
+        || LOCATION_AND_COMPONENT.contains(&decoration)
+        || BINDING_SET_AND_OFFSET.contains(&decoration)
 }
 
 /// The instructions of a module, each as its words.
-fn instructions(bytes: &[u8]) -> impl Iterator<Item = Vec<u32>> {
-    let mut words = bytes
+fn instructions(bytes: &[u8]) -> Vec<Vec<u32>> {
+    let words: Vec<u32> = bytes
         .chunks_exact(4)
-        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
-    let mut words = {
-        let header: Vec<u32> = words.by_ref().take(5).collect();
-        assert_eq!(
-            header[0], 0x0723_0203,
-            "SPIR-V starts with its magic number"
-        );
-        words
-    };
-    std::iter::from_fn(move || {
-        let first = words.next()?;
-        Some(
-            std::iter::once(first)
-                .chain(words.by_ref().take((first >> 16) as usize - 1))
-                .collect(),
-        )
-    })
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+        .collect();
+    assert_eq!(words[0], 0x0723_0203, "SPIR-V starts with its magic number");
+    let mut rest = &words[5..];
+    let mut instructions = Vec::new();
+    while let Some(first) = rest.first() {
+        let (instruction, others) = rest.split_at((first >> 16) as usize);
+        instructions.push(instruction.to_vec());
+        rest = others;
+    }
+    instructions
 }

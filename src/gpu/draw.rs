@@ -32,6 +32,14 @@ pub struct View {
     pub shading: u32,
 }
 
+/// Some patches, the same number in each instance.
+#[derive(Clone, Copy, Debug)]
+struct Draw {
+    first: u32,
+    patches_per_instance: u32,
+    instances: u32,
+}
+
 impl TessellatedSurface {
     /// Records the copy of everything to the device.
     ///
@@ -117,36 +125,54 @@ impl TessellatedSurface {
         batch: &Batch,
     ) {
         let pass = &self.prepared.passes[batch.pass];
+        let graphics = vk::PipelineBindPoint::GRAPHICS;
+        let sets = [self.sets[batch.pass]];
+        // SAFETY: this function's contract.
+        unsafe {
+            device.cmd_bind_pipeline(cmd, graphics, pipelines.get(batch.pass));
+            device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
+        }
+        // The first draw of all finds the ring free; every other one waits for the one before. Two draws of a batch have slots apart, but
+        // synchronization is a matter of whole buffers.
+        let mut waits = batch.ring_batch > 0;
+        for draw in self.draws(cut, batch) {
+            if waits && batch.points > 0 {
+                // SAFETY: this function's contract.
+                unsafe { cmd_ring_barrier(device, cmd) };
+            }
+            waits = true;
+            let frame = self.frame(view, cut, batch, draw);
+            let vertices = draw.patches_per_instance * pass.control_points;
+            // SAFETY: this function's contract.
+            unsafe {
+                let constants = bytemuck::bytes_of(&frame);
+                device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
+                device.cmd_draw(cmd, vertices, draw.instances, 0, 0);
+            }
+        }
+    }
+
+    /// The draws of a batch: full instances, and one of what is left, so that no patch is drawn that is none.
+    fn draws(&self, cut: Cut, batch: &Batch) -> impl Iterator<Item = Draw> + use<> {
         let count = batch.end - batch.first;
         let per_instance = self
             .patches_per_instance(cut, batch)
             .unwrap_or(count)
             .min(count);
-        let frame = self.frame(view, cut, batch, per_instance);
-        let graphics = vk::PipelineBindPoint::GRAPHICS;
-        let sets = [self.sets[batch.pass]];
-        // SAFETY: this function's contract.
-        unsafe {
-            if batch.ring_batch > 0 && batch.points > 0 {
-                cmd_ring_barrier(device, cmd);
-            }
-            device.cmd_bind_pipeline(cmd, graphics, pipelines.get(batch.pass));
-            device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
-            device.cmd_push_constants(
-                cmd,
-                layout.pipeline(),
-                STAGES,
-                0,
-                bytemuck::bytes_of(&frame),
-            );
-            device.cmd_draw(
-                cmd,
-                per_instance * pass.control_points,
-                count.div_ceil(per_instance),
-                0,
-                0,
-            );
-        }
+        let (instances, rest) = (count / per_instance, count % per_instance);
+        let full = Draw {
+            first: batch.first,
+            patches_per_instance: per_instance,
+            instances,
+        };
+        let last = Draw {
+            first: batch.end - rest,
+            patches_per_instance: rest,
+            instances: 1,
+        };
+        [full, last]
+            .into_iter()
+            .filter(|draw| draw.patches_per_instance > 0)
     }
 
     /// How many patches an instance may hold on this driver; None where nothing bounds it.
@@ -158,7 +184,7 @@ impl TessellatedSurface {
         patches_per_instance(&self.workarounds, segments)
     }
 
-    fn frame(&self, view: &View, cut: Cut, batch: &Batch, patches_per_instance: u32) -> abi::Frame {
+    fn frame(&self, view: &View, cut: Cut, batch: &Batch, draw: Draw) -> abi::Frame {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         abi::Frame {
             view_projection: view.clip_from_model,
@@ -170,9 +196,9 @@ impl TessellatedSurface {
                 abi::FRAME_FRACTIONAL_EVEN,
             ) | flag(self.options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
                 | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE),
-            first_patch: batch.first,
+            first_patch: draw.first,
             end_patch: batch.end,
-            patches_per_instance,
+            patches_per_instance: draw.patches_per_instance,
             ring_points: (self.options.ring_bytes / 16).min(u64::from(u32::MAX / 2)) as u32,
             counter: abi::COUNTER_BATCHES + batch.ring_batch,
             capture_vertices: self.options.capture_vertices,

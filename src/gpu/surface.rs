@@ -35,6 +35,9 @@ pub struct SurfaceOptions {
     pub capture_vertices: u32,
     /// The greatest level that will be drawn, 1..=64.
     pub greatest_level: f32,
+    /// How many times the batches are drawn after one [`cmd_prepare`](TessellatedSurface::cmd_prepare); see
+    /// [`again`](TessellatedSurface::again).
+    pub rounds: u32,
 }
 
 impl Default for SurfaceOptions {
@@ -44,6 +47,7 @@ impl Default for SurfaceOptions {
             ring_bytes: 1 << 20,
             slots: Slots::Counter,
             capture_vertices: 0,
+            rounds: 1,
             greatest_level: 64.0,
         }
     }
@@ -227,6 +231,16 @@ impl TessellatedSurface {
     /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch.
     pub fn batches(&self, cut: Cut) -> Result<Vec<Batch>> {
         batches(&self.prepared, cut, bounds(self.options))
+    }
+
+    /// The batch for the next round: drawn in the same frame once more, for lines over a surface or a second view.
+    pub fn again(&self, batch: &Batch) -> Batch {
+        let counters = self.buffers.counters().size() / 4 - u64::from(abi::COUNTER_BATCHES);
+        let round = (counters / u64::from(self.options.rounds)) as u32;
+        Batch {
+            ring_batch: batch.ring_batch + round,
+            ..*batch
+        }
     }
 
     /// Replaces the control vertices, by positions relative to the model's centre; they arrive with the next [`cmd_upload`](Self::cmd_upload).
@@ -443,5 +457,5 @@ fn counter_count(prepared: &Prepared, options: SurfaceOptions) -> Result<u64> {
         };
         most = most.max(batches(prepared, cut, bounds(options))?.len());
     }
-    Ok(u64::from(abi::COUNTER_BATCHES) + most as u64)
+    Ok(u64::from(abi::COUNTER_BATCHES) + most as u64 * u64::from(options.rounds))
 }

@@ -5,8 +5,10 @@ mod device;
 mod instance;
 mod offscreen;
 mod render_pass;
+mod statistics;
 
 pub use choice::{DeviceInfo, devices};
 pub use device::Device;
 pub use instance::Instance;
 pub use offscreen::{Encoding, OffscreenTarget};
+pub use statistics::StatisticsQuery;

@@ -248,19 +248,24 @@ fn regular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surf
     })
 }
 
-/// Runs the stencils that the point needs, and evaluates it; from the same bytes as the shaders.
+/// Runs the stencils that the point needs, and evaluates it; from the same bytes as the shaders. Like them it takes the ring relative to
+/// its first vertex: tangents deep in the tree are differences of small numbers then, instead of small differences of large ones.
 fn irregular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
     let plans = plans(pass);
     let abi::Patch { controls, plan, .. } = pass.patches[patch];
     let header = plans.headers[plan as usize];
     let ring = &pass.controls[controls as usize..][..header.ring_size as usize];
+    let origin = positions[ring[0] as usize];
+    let local: Vec<Vec3> = ring
+        .iter()
+        .map(|&vertex| positions[vertex as usize] - origin)
+        .collect();
     let stencil = |number: u32| {
         let weights = &plans.weights[(header.weights + number * header.ring_size) as usize..];
-        ring.iter()
+        local
+            .iter()
             .zip(weights)
-            .fold(Vec3::ZERO, |sum, (&vertex, &weight)| {
-                sum + weight * positions[vertex as usize]
-            })
+            .fold(Vec3::ZERO, |sum, (&point, &weight)| sum + weight * point)
     };
     match walk(plans, plan, uv) {
         Leaf::Corner(corner) => {
@@ -277,9 +282,13 @@ fn irregular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Su
             ..
         } => {
             let (u, v) = creased(uv, edge, sharpness);
-            bspline(u, v, scale, |x, y| {
+            let local = bspline(u, v, scale, |x, y| {
                 stencil(plans.point(points + x as u32 + stride * y as u32))
-            })
+            });
+            Surface {
+                position: local.position + origin,
+                ..local
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod camera;
 mod devices;
+mod drawing;
 mod gpu;
 mod model;
 mod options;

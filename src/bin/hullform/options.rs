@@ -21,6 +21,18 @@ pub struct Global {
     /// Scratch memory that control shaders share: bytes, or with KiB or MiB
     #[arg(long, global = true, value_name = "N", default_value = "1MiB", value_parser = bytes)]
     pub ring_bytes: u64,
+    /// Who gives patches their slots in that memory
+    #[arg(long, global = true, value_name = "WHO", default_value = "counter")]
+    pub slots: Slots,
+}
+
+/// Who gives patches their slots in the scratch ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Slots {
+    /// The control shaders, from a counter a batch
+    Counter,
+    /// The host, by summing up beforehand
+    Host,
 }
 
 /// Where the vertices of a subdivided edge lie: Vulkan's spacing modes that keep them apart.
@@ -30,6 +42,15 @@ pub enum Spacing {
     Equal,
     /// Any level; vertices slide in pairs as it grows
     FractionalEven,
+}
+
+impl From<Spacing> for hullform::tessellation::Spacing {
+    fn from(spacing: Spacing) -> Self {
+        match spacing {
+            Spacing::Equal => hullform::tessellation::Spacing::Equal,
+            Spacing::FractionalEven => hullform::tessellation::Spacing::FractionalEven,
+        }
+    }
 }
 
 /// How a surface is cut up: options that `render` and `tessellate` share.
@@ -44,6 +65,16 @@ pub struct Cut {
     /// Spacing of the vertices along an edge
     #[arg(long, default_value = "equal")]
     pub spacing: Spacing,
+}
+
+impl Cut {
+    /// As the library takes it.
+    pub fn cut(&self) -> hullform::gpu::Cut {
+        hullform::gpu::Cut {
+            level: self.level,
+            spacing: self.spacing.into(),
+        }
+    }
 }
 
 /// Width and height of a picture.

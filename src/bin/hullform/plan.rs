@@ -3,9 +3,12 @@
 use crate::options::Global;
 use crate::{model, print, progress};
 use clap::Args;
-use hullform::mesh::ControlMesh;
-use hullform::{Error, Result};
-use serde_json::{Map, Value};
+use hullform::Result;
+use hullform::mesh::{ControlMesh, Model};
+use hullform::method::method;
+use hullform::plan::PlanOptions;
+use serde_json::{Map, Value, json};
+use std::time::Instant;
 
 /// Options of `plan`.
 #[derive(Args)]
@@ -31,22 +34,67 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     }
 }
 
-/// A line a fact, the values in a column.
+/// A line a fact, the values in a column; what belongs together stands below its heading.
 fn as_text(facts: &Map<String, Value>) -> String {
-    let width = facts.keys().map(String::len).max().unwrap_or(0);
-    let line = |(name, value): (&String, &Value)| {
-        let name = name.replace('_', " ");
-        match value {
-            Value::String(text) => format!("{name:width$}  {text}"),
-            value => format!("{name:width$}  {value}"),
+    let line = |(name, value): (&String, &Value)| match value {
+        Value::Object(parts) => {
+            let parts: Vec<String> = parts
+                .iter()
+                .map(|(part, value)| format!("  {:20}  {value}", part.replace('_', " ")))
+                .collect();
+            format!("{}\n{}", name.replace('_', " "), parts.join("\n"))
         }
+        value => format!("{:22}  {value}", name.replace('_', " ")),
     };
     facts.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// What there is to tell about the plans of `mesh`, in the order to tell it.
 fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>> {
-    // SEAM: the planner goes here.
-    let _ = (mesh, arguments.max_level, arguments.no_direct_creases);
-    Err(Error::Refused("planning is not built yet".into()))
+    let options = PlanOptions {
+        max_level: arguments.max_level.into(),
+        direct_creases: !arguments.no_direct_creases,
+    };
+    let started = Instant::now();
+    let model = Model::new(mesh.clone());
+    let prepared = (method("quadtree")?.prepare)(&model, options)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let plans = prepared.plans.unwrap_or_default();
+    let [internal, regular, boundary, crease, terminal, extraordinary] = plans.nodes;
+    let levels = (0..=options.max_level).map(|level| {
+        (
+            level.to_string(),
+            plans.control_points[level as usize].into(),
+        )
+    });
+    let facts = json!({
+        "vertices": mesh.vertex_count(),
+        "faces": mesh.face_count(),
+        "patches": plans.regular + plans.irregular,
+        "regular": plans.regular,
+        "irregular": plans.irregular,
+        "plans": plans.plans,
+        "nodes": {
+            "internal": internal,
+            "regular": regular,
+            "boundary": boundary,
+            "crease": crease,
+            "terminal": terminal,
+            "extraordinary": extraordinary,
+        },
+        "stencils": plans.stencils,
+        "bytes": {
+            "vertices": plans.vertex_bytes,
+            "indices": plans.index_bytes,
+            "quadtree": plans.quadtree_bytes,
+            "stencils": plans.stencil_bytes,
+            "scratch_worst_case": plans.scratch_worst_case_bytes,
+        },
+        "control_points": levels.collect::<Map<String, Value>>(),
+        "build_seconds": seconds,
+    });
+    let Value::Object(facts) = facts else {
+        unreachable!("an object was written")
+    };
+    Ok(facts)
 }

@@ -1,16 +1,21 @@
 //! `hullform render`: a picture of a model.
 
 use crate::camera::{Camera, View};
+use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::{Cut, Global, Size};
+use crate::options::{self, Global, Size};
 use crate::output::{Format, Pending, png};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
-use hullform::host::OffscreenTarget;
-use hullform::mesh::ControlMesh;
-use hullform::{Error, Result};
-use serde_json::Value;
+use glam::Vec3;
+use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
+use hullform::host::{OffscreenTarget, StatisticsQuery};
+use hullform::mesh::Model;
+use hullform::method::method;
+use hullform::{Error, Result, abi};
+use serde_json::{Value, json};
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// Samples a pixel.
 const SAMPLES: u32 = 4;
@@ -26,14 +31,14 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE.png", default_value = "hullform.png")]
     output: PathBuf,
     #[command(flatten)]
-    cut: Cut,
+    cut: options::Cut,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
     /// What the colours mean
     #[arg(long, default_value = "lit")]
     shading: Shading,
-    /// Draw the edges of the triangles only
+    /// Draw the edges of the triangles over the surface
     #[arg(long)]
     wireframe: bool,
     /// Angles in degrees and a zoom
@@ -66,12 +71,15 @@ pub enum Shading {
 
 /// Everything to be drawn.
 struct Scene<'a> {
-    mesh: &'a ControlMesh,
-    cut: &'a Cut,
+    model: &'a Model,
+    method: &'a str,
+    cut: Cut,
     view: View,
     shading: Shading,
     wireframe: bool,
     ring_bytes: u64,
+    slots: Slots,
+    load_seconds: f64,
 }
 
 /// Draws the model and writes picture and statistics.
@@ -79,12 +87,15 @@ struct Scene<'a> {
 /// The files come last: what the validation layer complained about is not written.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
-    let mesh = model::load(arguments.model.as_deref())?;
+    method(&arguments.cut.method)?;
+    let started = Instant::now();
+    let model = Model::new(model::load(arguments.model.as_deref())?);
+    let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
     let stats_file = arguments.stats.as_deref().map(Pending::create);
     let stats_file = stats_file.transpose()?;
     let gpu = Gpu::open(global)?;
-    let (pixels, stats) = draw_picture(&gpu, &mesh, arguments, global)?;
+    let (pixels, stats) = draw_picture(&gpu, &model, load_seconds, arguments, global)?;
     gpu.finish()?;
     let size = arguments.size;
     picture.write(|file| png::write(file, size.width, size.height, &pixels))?;
@@ -96,7 +107,8 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
 
 fn draw_picture(
     gpu: &Gpu,
-    mesh: &ControlMesh,
+    model: &Model,
+    load_seconds: f64,
     arguments: &Arguments,
     global: &Global,
 ) -> Result<(Vec<u8>, Value)> {
@@ -110,13 +122,18 @@ fn draw_picture(
     }
     let target = OffscreenTarget::new(&gpu.device, width, height, SAMPLES)?;
     let aspect = width as f32 / height as f32;
+    let (low, high) = model.mesh().bounds();
+    let bounds = (low - model.centre(), high - model.centre());
     let scene = Scene {
-        mesh,
-        cut: &arguments.cut,
-        view: arguments.camera.frame(mesh.bounds(), aspect),
+        model,
+        method: &arguments.cut.method,
+        cut: arguments.cut.cut(),
+        view: arguments.camera.frame(bounds, aspect),
         shading: arguments.shading,
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
+        slots: Drawing::slots(global.slots),
+        load_seconds,
     };
     let stats = progress::during("drawing", |_| draw(gpu, &target, &scene))?;
     Ok((target.read_pixels(), stats))
@@ -133,18 +150,179 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
 
 /// Draws `scene` into `target`, copies the picture to the host, and returns the statistics.
 fn draw(gpu: &Gpu, target: &OffscreenTarget, scene: &Scene<'_>) -> Result<Value> {
-    // SEAM: the renderer goes here. Until then there is nothing but the background, and that is not a picture of the model.
-    let _ = (scene.mesh, scene.cut, scene.view.clip_from_model());
-    let _ = (scene.shading, scene.wireframe, scene.ring_bytes);
-    let _ = &gpu.workarounds;
-    gpu.device.submit(|cmd| {
-        // SAFETY: a pass of this device's target, and then the copy of its picture.
-        unsafe {
-            target.begin(cmd, BACKGROUND);
-            target.end(cmd);
-            target.cmd_copy_to_host(cmd);
+    let stats = draw_with(gpu, target, scene, scene.slots)?;
+    if stats["ring"]["overflows"] == 0 {
+        return Ok(stats);
+    }
+    // Control shaders ran more often than once a patch and took more than their share. Slots from the host do not depend on that.
+    tracing::warn!("the scratch ring overflowed; drawing again with slots from the host");
+    draw_with(gpu, target, scene, Slots::Host)
+}
+
+fn draw_with(
+    gpu: &Gpu,
+    target: &OffscreenTarget,
+    scene: &Scene<'_>,
+    slots: Slots,
+) -> Result<Value> {
+    let options = SurfaceOptions {
+        ring_bytes: scene.ring_bytes,
+        slots,
+        greatest_level: scene.cut.level,
+        rounds: if scene.wireframe { 2 } else { 1 },
+        ..Default::default()
+    };
+    let mut drawing = Drawing::new(gpu, scene.model, scene.method, options)?;
+    drawing.upload()?;
+    let batches = drawing.surface().batches(scene.cut)?;
+    drawing.write_slots(scene.cut, &batches);
+    let started = Instant::now();
+    let mut pipelines = vec![drawing.pipelines(target, scene.cut.spacing, Fill::Solid)?];
+    if scene.wireframe {
+        pipelines.push(drawing.pipelines(target, scene.cut.spacing, Fill::Lines)?);
+    }
+    let drawn = draw_frame(gpu, target, scene, &drawing, &pipelines, &batches);
+    let seconds = started.elapsed().as_secs_f64();
+    for pipelines in pipelines {
+        // SAFETY: the submission has been waited for.
+        unsafe { pipelines.destroy(gpu.device.raw()) };
+    }
+    Ok(statistics(gpu, scene, &drawing, &batches, &drawn?, seconds))
+}
+
+/// Draws one frame: the surface, and with a second set of pipelines its lines. Returns the pipeline statistics of the surface.
+fn draw_frame(
+    gpu: &Gpu,
+    target: &OffscreenTarget,
+    scene: &Scene<'_>,
+    drawing: &Drawing<'_>,
+    pipelines: &[Pipelines],
+    batches: &[Batch],
+) -> Result<Option<[u64; 3]>> {
+    let statistics = gpu.device.info().support.optional.pipeline_statistics_query;
+    let query = statistics
+        .then(|| StatisticsQuery::new(&gpu.device))
+        .transpose()?;
+    let device = gpu.device.raw();
+    // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+    gpu.device.submit(|cmd| unsafe {
+        drawing.surface().cmd_prepare(device, cmd);
+        if let Some(query) = &query {
+            query.cmd_reset(cmd);
         }
+        target.begin(cmd, BACKGROUND);
+        if let Some(query) = &query {
+            query.cmd_begin(cmd);
+        }
+        drawing.cmd_draw(
+            cmd,
+            &pipelines[0],
+            &scene.view(scene.shading.code()),
+            scene.cut,
+            batches,
+        );
+        if let Some(query) = &query {
+            query.cmd_end(cmd);
+        }
+        if let Some(lines) = pipelines.get(1) {
+            let again: Vec<Batch> = batches
+                .iter()
+                .map(|batch| drawing.surface().again(batch))
+                .collect();
+            drawing.cmd_draw(
+                cmd,
+                lines,
+                &scene.view(abi::SHADING_LINES),
+                scene.cut,
+                &again,
+            );
+        }
+        target.end(cmd);
+        drawing.surface().cmd_read_back(device, cmd);
+        target.cmd_copy_to_host(cmd);
         Ok(())
     })?;
-    Err(Error::Refused("drawing is not built yet".into()))
+    query.map(|query| query.read()).transpose()
+}
+
+/// What `--stats` writes.
+fn statistics(
+    gpu: &Gpu,
+    scene: &Scene<'_>,
+    drawing: &Drawing<'_>,
+    batches: &[Batch],
+    counted: &Option<[u64; 3]>,
+    first_frame: f64,
+) -> Value {
+    let info = gpu.device.info();
+    let plans = drawing
+        .surface()
+        .prepared()
+        .plans
+        .clone()
+        .unwrap_or_default();
+    let patches: usize = drawing
+        .surface()
+        .prepared()
+        .passes
+        .iter()
+        .map(|pass| pass.patches.len())
+        .sum();
+    let ring_batches = batches.iter().filter(|batch| batch.points > 0).count();
+    let counters = drawing.counters();
+    json!({
+        "device": info.name,
+        "driver": format!("{} {}", info.driver.name, info.driver.info),
+        "method": scene.method,
+        "level": scene.cut.level,
+        "spacing": scene.cut.spacing.name(),
+        "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },
+        "plans": plans.plans,
+        "draws": batches.len(),
+        "batches": ring_batches,
+        "workarounds": gpu.workarounds.iter().map(|row| row.name).collect::<Vec<_>>(),
+        "pipeline_statistics": counted.map(|[patches, evaluations, clipping]| json!({
+            "control_shader_patches": patches,
+            "evaluation_invocations": evaluations,
+            "clipping_primitives": clipping,
+        })),
+        "ring": {
+            "bytes": scene.ring_bytes,
+            "points_computed": counters.points,
+            "overflows": counters.overflows,
+        },
+        "seconds": {
+            "load": scene.load_seconds,
+            "plan": drawing.plan_seconds,
+            "upload": drawing.upload_seconds,
+            "first_frame": first_frame,
+        },
+    })
+}
+
+impl Scene<'_> {
+    fn view(&self, shading: u32) -> gpu::View {
+        let eye = self
+            .view
+            .eye_from_model
+            .inverse()
+            .transform_point3(Vec3::ZERO);
+        gpu::View {
+            clip_from_model: self.view.clip_from_model().to_cols_array_2d(),
+            eye: eye.to_array(),
+            shading,
+        }
+    }
+}
+
+impl Shading {
+    fn code(self) -> u32 {
+        match self {
+            Shading::Lit => abi::SHADING_LIT,
+            Shading::Normal => abi::SHADING_NORMAL,
+            Shading::Patch => abi::SHADING_PATCH,
+            Shading::Node => abi::SHADING_NODE,
+            Shading::Valence => abi::SHADING_VALENCE,
+        }
+    }
 }

@@ -27,13 +27,16 @@ mod tests {
         assert_eq!(lines.next(), Some("face,u,v,px,py,pz,nx,ny,nz"));
         assert_eq!(lines.clone().next(), Some("7,0,0,0,-0.1,0.000000001,0,0,1"));
         for (line, point) in lines.by_ref().zip(&surface.points) {
-            let numbers: Vec<f32> = line
+            let numbers: Vec<f64> = line
                 .split(',')
                 .map(|number| number.parse().expect("a number"))
                 .collect();
-            assert_eq!(numbers[1..3], point.uv);
+            let single = |range: std::ops::Range<usize>| {
+                numbers[range].iter().map(|&x| x as f32).collect::<Vec<_>>()
+            };
+            assert_eq!(single(1..3), point.uv);
             assert_eq!(numbers[3..6], point.position);
-            assert_eq!(numbers[6..9], point.normal);
+            assert_eq!(single(6..9), point.normal);
         }
         assert_eq!(text.lines().count(), 4);
     }

@@ -40,8 +40,8 @@ pub struct Point {
     pub face: u32,
     /// Where in the face.
     pub uv: [f32; 2],
-    /// Where in space.
-    pub position: [f32; 3],
+    /// Where in space, in the model's own coordinates.
+    pub position: [f64; 3],
     /// The surface's unit normal.
     pub normal: [f32; 3],
 }

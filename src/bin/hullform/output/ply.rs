@@ -5,9 +5,9 @@ use std::io::{self, Write};
 
 /// A vertex's properties, in the order of the bytes.
 const VERTEX: [&str; 9] = [
-    "float x",
-    "float y",
-    "float z",
+    "double x",
+    "double y",
+    "double z",
     "float nx",
     "float ny",
     "float nz",
@@ -20,8 +20,10 @@ const VERTEX: [&str; 9] = [
 pub fn write(out: &mut dyn Write, surface: &Surface) -> io::Result<()> {
     write_header(out, surface)?;
     for point in &surface.points {
-        let floats = point.position.iter().chain(&point.normal).chain(&point.uv);
-        for number in floats {
+        for number in point.position {
+            out.write_all(&number.to_le_bytes())?;
+        }
+        for number in point.normal.iter().chain(&point.uv) {
             out.write_all(&number.to_le_bytes())?;
         }
         out.write_all(&point.face.to_le_bytes())?;
@@ -57,10 +59,10 @@ mod tests {
         let end = b"end_header\n";
         let body = bytes.windows(end.len()).position(|part| part == end);
         let body = &bytes[body.expect("a header") + end.len()..];
-        assert_eq!(body.len(), 3 * (8 * 4 + 4) + (1 + 3 * 4));
-        assert_eq!(body[4..8], (-0.1f32).to_le_bytes());
-        assert_eq!(body[32..36], 7u32.to_le_bytes());
-        assert_eq!(body[3 * 36..][..5], [3, 0, 0, 0, 0]);
+        assert_eq!(body.len(), 3 * (3 * 8 + 5 * 4 + 4) + (1 + 3 * 4));
+        assert_eq!(body[8..16], (-0.1f64).to_le_bytes());
+        assert_eq!(body[44..48], 7u32.to_le_bytes());
+        assert_eq!(body[3 * 48..][..5], [3, 0, 0, 0, 0]);
         let header = String::from_utf8_lossy(&bytes);
         assert!(header.contains("element vertex 3\n") && header.contains("element face 1\n"));
     }

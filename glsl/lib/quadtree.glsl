@@ -56,7 +56,8 @@ Leaf find_leaf(uint plan, vec2 uv) {
     bvec2 upper = greaterThanEqual(uv, vec2(0.5));
     Node node = nodes[plans[plan].root];
     float scale = 1.0;
-    while ((node.kind & 15u) == NODE_INTERNAL) {
+    // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
+    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 1u && (node.kind & 15u) == NODE_INTERNAL; ++depth) {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);

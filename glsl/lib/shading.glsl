@@ -4,17 +4,20 @@
 
 #include "abi.glsl"
 
-// A warm key light from above the eye's left, a cool fill from the right, sky from above; `gloss` is the strength of the highlight.
+// A warm key light from above the eye's left, a cool one from behind the right, sky above and ground below; `gloss` is the strength of
+// the highlights.
 vec3 lit(vec3 colour, vec3 normal, vec3 to_eye, float gloss) {
     vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), to_eye) + vec3(1e-6, 0.0, 0.0));
     vec3 up = cross(to_eye, right);
-    vec3 key = normalize(to_eye * 0.7 - right * 0.6 + up * 0.75);
-    vec3 fill = normalize(to_eye * 0.5 + right * 0.9 - up * 0.1);
-    vec3 sky = mix(vec3(0.16, 0.15, 0.15), vec3(0.36, 0.40, 0.46), 0.5 + 0.5 * normal.y);
-    vec3 light = sky + vec3(0.95, 0.90, 0.82) * max(dot(normal, key), 0.0) + vec3(0.16, 0.20, 0.28) * max(dot(normal, fill), 0.0);
-    float highlight = pow(max(dot(normal, normalize(key + to_eye)), 0.0), 48.0);
-    float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0);
-    return colour * light + gloss * (0.22 * highlight + 0.10 * rim) * vec3(1.0, 0.98, 0.95);
+    vec3 key = normalize(to_eye * 0.55 - right * 0.65 + up * 0.80);
+    vec3 back = normalize(right * 0.9 - to_eye * 0.35 + up * 0.35);
+    vec3 ambient = mix(vec3(0.10, 0.09, 0.085), vec3(0.26, 0.30, 0.36), 0.5 + 0.5 * normal.y);
+    float key_light = max(dot(normal, key), 0.0);
+    float back_light = max(dot(normal, back), 0.0);
+    vec3 light = ambient + vec3(1.05, 0.98, 0.88) * key_light + vec3(0.20, 0.28, 0.42) * back_light;
+    float highlight = pow(max(dot(normal, normalize(key + to_eye)), 0.0), 60.0);
+    float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
+    return colour * light + gloss * (0.25 * highlight * vec3(1.0, 0.97, 0.92) + grazing * 0.12 * vec3(0.8, 0.9, 1.0));
 }
 
 // A pleasant colour a number, by the golden angle around the hue circle.

@@ -2,6 +2,7 @@
 #ifndef FLAT_GLSL
 #define FLAT_GLSL
 
+#include "lib/cell.glsl"
 #include "lib/control_points.glsl"
 #include "lib/control_vertex.glsl"
 #include "lib/levels.glsl"
@@ -30,6 +31,10 @@ Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
     return Surface(bottom * (1.0 - uv.y) + top * uv.y,
                    (in_point[1] - in_point[0]) * (1.0 - uv.y) + (in_point[2] - in_point[3]) * uv.y, top - bottom);
 }
+#endif
+
+#ifdef STAGE_FRAGMENT
+Cell cell_at(Patch record, vec2 uv) { return Cell(NODE_REGULAR, uv, 1.0); }
 #endif
 
 #endif

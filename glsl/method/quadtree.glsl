@@ -6,8 +6,8 @@
 #define QUADTREE_METHOD_GLSL
 
 #define SCRATCH_RING
-#define PLAN_NODES
 
+#include "lib/cell.glsl"
 #include "lib/control_vertex.glsl"
 #include "lib/levels.glsl"
 #include "lib/quadtree.glsl"
@@ -71,7 +71,10 @@ Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
 #endif
 
 #ifdef STAGE_FRAGMENT
-uint node_kind(Patch record, vec2 uv) { return find_leaf(record.plan, uv).kind; }
+Cell cell_at(Patch record, vec2 uv) {
+    Leaf leaf = find_leaf(record.plan, uv);
+    return Cell(leaf.kind, leaf.uv, leaf.scale);
+}
 #endif
 
 #endif

@@ -4,6 +4,7 @@
 #define QUADTREE_REGULAR_GLSL
 
 #include "lib/bspline.glsl"
+#include "lib/cell.glsl"
 #include "lib/control_points.glsl"
 #include "lib/control_vertex.glsl"
 #include "lib/levels.glsl"
@@ -29,6 +30,10 @@ Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
     add_row(surface, u, v.value.w, v.derivative.w, in_point[12], in_point[13], in_point[14], in_point[15]);
     return surface;
 }
+#endif
+
+#ifdef STAGE_FRAGMENT
+Cell cell_at(Patch record, vec2 uv) { return Cell(NODE_REGULAR, uv, 1.0); }
 #endif
 
 #endif

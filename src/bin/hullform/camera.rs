@@ -1,11 +1,14 @@
 //! The camera of a picture: it turns around the model, which fills the frame.
 
 use glam::camera::rh::proj::vulkan;
-use glam::{DVec3, Mat4, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 use std::str::FromStr;
 
 /// Half the angle of view over the shorter side, at zoom 1.
 const HALF_VIEW: f32 = 20.0 * std::f32::consts::PI / 180.0;
+
+/// How much of the picture's shorter reach the model takes.
+const MARGIN: f32 = 0.88;
 
 /// Where the picture is taken from: `--camera YAW,PITCH,ZOOM`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,33 +50,47 @@ impl FromStr for Camera {
 }
 
 impl Camera {
-    /// Frames the ball around the box `bounds` in a picture whose width is `aspect` times its height.
-    pub fn frame(&self, bounds: (DVec3, DVec3), aspect: f32) -> View {
-        let centre = ((bounds.0 + bounds.1) * 0.5).as_vec3();
+    /// Looks at `points` from a distance at which they span twice [`HALF_VIEW`], and crops to what they cover of a picture whose width is
+    /// `aspect` times its height.
+    pub fn frame(&self, points: &[Vec3], aspect: f32) -> View {
+        let first = points.first().copied().unwrap_or(Vec3::ZERO);
+        let low = points.iter().fold(first, |low, &point| low.min(point));
+        let high = points.iter().fold(first, |high, &point| high.max(point));
+        let centre = 0.5 * (low + high);
         // A single point still needs near < far.
-        let radius = ((bounds.1 - bounds.0).length() * 0.5).max(1e-6) as f32;
+        let radius = points
+            .iter()
+            .map(|point| point.distance(centre))
+            .fold(1e-6, f32::max);
         let distance = radius / HALF_VIEW.sin();
         let eye_from_model = Mat4::from_translation(Vec3::new(0.0, 0.0, -distance))
             * Mat4::from_rotation_x(self.pitch.to_radians())
             * Mat4::from_rotation_y(-self.yaw.to_radians())
             * Mat4::from_translation(-centre);
+        let (near, far) = ((distance - radius) * 0.9, (distance + radius) * 1.1);
+        let whole = vulkan::perspective(2.0 * HALF_VIEW, aspect, near, far);
         View {
             eye_from_model,
-            clip_from_eye: self.projection(radius, distance, aspect),
+            clip_from_eye: self.crop(points, whole * eye_from_model) * whole,
         }
     }
 
-    /// Zoom narrows the angle of view and leaves the eye outside of the ball, whatever it is: nothing is ever clipped.
-    fn projection(&self, radius: f32, distance: f32, aspect: f32) -> Mat4 {
-        let shorter = HALF_VIEW.tan() / self.zoom;
-        let vertical = if aspect < 1.0 {
-            shorter / aspect
-        } else {
-            shorter
-        };
-        let near = (distance - radius) * 0.9;
-        let far = (distance + radius) * 1.1;
-        vulkan::perspective(2.0 * vertical.atan(), aspect, near, far)
+    /// From the clip space of the whole view to that of the part that the points cover, with a margin. Zoom only enlarges that part and
+    /// leaves the eye where it is, outside of the model: nothing is ever clipped.
+    fn crop(&self, points: &[Vec3], clip_from_model: Mat4) -> Mat4 {
+        let seen = points
+            .iter()
+            .map(|&point| clip_from_model.project_point3(point).truncate());
+        let (low, high) = seen.fold((Vec2::MAX, Vec2::MIN), |(low, high), point| {
+            (low.min(point), high.max(point))
+        });
+        if low.cmpgt(high).any() {
+            return Mat4::IDENTITY;
+        }
+        let scale = self.zoom * MARGIN * 2.0 / (high - low).max_element().max(1e-6);
+        let middle = 0.5 * (low + high);
+        Mat4::from_scale(Vec3::new(scale, scale, 1.0))
+            * Mat4::from_translation((-middle).extend(0.0))
     }
 }
 
@@ -88,36 +105,51 @@ impl View {
 mod tests {
     use super::*;
 
-    const BOX: (DVec3, DVec3) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(3.0, 6.0, 11.0));
+    fn corners() -> Vec<Vec3> {
+        let side = |bit: usize, low: f32, high: f32| if bit & 1 == 0 { low } else { high };
+        let corner = |i: usize| {
+            Vec3::new(
+                side(i, 1.0, 3.0),
+                side(i >> 1, 2.0, 6.0),
+                side(i >> 2, 3.0, 11.0),
+            )
+        };
+        (0..8).map(corner).collect()
+    }
+
+    const CENTRE: Vec3 = Vec3::new(2.0, 4.0, 7.0);
 
     fn camera(text: &str) -> Camera {
         text.parse().expect("a camera")
     }
 
-    fn project(camera: &Camera, aspect: f32, point: DVec3) -> Vec3 {
-        let view = camera.frame(BOX, aspect);
-        view.clip_from_model().project_point3(point.as_vec3())
+    fn project(camera: &Camera, aspect: f32, point: Vec3) -> Vec3 {
+        camera
+            .frame(&corners(), aspect)
+            .clip_from_model()
+            .project_point3(point)
     }
 
     #[test]
-    fn every_corner_is_in_the_picture_from_everywhere() {
+    fn every_corner_is_in_the_picture_from_everywhere_and_fills_it() {
         for yaw in (-180..180).step_by(30) {
             for pitch in [-90, -45, 0, 45, 90] {
                 for aspect in [0.3, 1.0, 2.5] {
                     let camera = camera(&format!("{yaw},{pitch},1"));
-                    for corner in 0..8 {
-                        let pick = |axis: usize| {
-                            if corner >> axis & 1 == 0 {
-                                BOX.0[axis]
-                            } else {
-                                BOX.1[axis]
-                            }
-                        };
-                        let corner = DVec3::new(pick(0), pick(1), pick(2));
-                        let p = project(&camera, aspect, corner);
-                        assert!(p.x.abs() <= 1.001 && p.y.abs() <= 1.001, "{p}");
-                        assert!((0.0..=1.0).contains(&p.z), "{p}");
-                    }
+                    let seen: Vec<Vec3> = corners()
+                        .into_iter()
+                        .map(|p| project(&camera, aspect, p))
+                        .collect();
+                    assert!(
+                        seen.iter().all(|p| p.truncate().abs().max_element() <= 0.9),
+                        "{seen:?}"
+                    );
+                    assert!(seen.iter().all(|p| (0.0..=1.0).contains(&p.z)), "{seen:?}");
+                    let reach = seen
+                        .iter()
+                        .map(|p| p.truncate().abs().max_element())
+                        .fold(0.0, f32::max);
+                    assert!(reach > 0.85, "{reach}");
                 }
             }
         }
@@ -125,25 +157,26 @@ mod tests {
 
     #[test]
     fn up_is_up_and_right_is_right() {
-        let front = camera("0,0,1");
-        let centre = (BOX.0 + BOX.1) * 0.5;
-        assert!(project(&front, 1.0, centre).truncate().length() < 1e-5);
+        let moved = |camera: &str, by: Vec3| {
+            let camera = self::camera(camera);
+            project(&camera, 1.0, CENTRE + by) - project(&camera, 1.0, CENTRE)
+        };
         // Vulkan's y points down.
-        assert!(project(&front, 1.0, centre + DVec3::Y).y < 0.0);
-        assert!(project(&front, 1.0, centre + DVec3::X).x > 0.0);
-        let nearer = project(&front, 1.0, centre + DVec3::Z);
-        assert!(nearer.z < project(&front, 1.0, centre).z);
+        assert!(moved("0,0,1", Vec3::Y).y < 0.0);
+        assert!(moved("0,0,1", Vec3::X).x > 0.0);
+        assert!(moved("0,0,1", Vec3::Z).z < 0.0);
         // From the right, and from above.
-        assert!(project(&camera("90,0,1"), 1.0, centre + DVec3::Z).x < 0.0);
-        assert!(project(&camera("0,90,1"), 1.0, centre + DVec3::Z).y > 0.0);
+        assert!(moved("90,0,1", Vec3::Z).x < 0.0);
+        assert!(moved("0,90,1", Vec3::Z).y > 0.0);
     }
 
     #[test]
     fn zoom_magnifies() {
-        let point = (BOX.0 + BOX.1) * 0.5 + DVec3::X;
-        let once = project(&camera("0,0,1"), 1.0, point).x;
-        let thrice = project(&camera("0,0,3"), 1.0, point).x;
-        assert!((thrice / once - 3.0).abs() < 1e-4);
+        let width = |camera: &str| {
+            let camera = self::camera(camera);
+            (project(&camera, 1.0, CENTRE + Vec3::X) - project(&camera, 1.0, CENTRE)).x
+        };
+        assert!((width("0,0,3") / width("0,0,1") - 3.0).abs() < 1e-4);
     }
 
     #[test]

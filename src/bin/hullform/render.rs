@@ -4,14 +4,14 @@ use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
 use crate::options::{self, Global, Size};
-use crate::output::{Format, Pending, png};
+use crate::output::{Format, Pending, picture, png};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::method;
+use hullform::method::{Prepared, method};
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -19,8 +19,10 @@ use std::time::Instant;
 
 /// Samples a pixel.
 const SAMPLES: u32 = 4;
-/// The picture's background, in linear light.
-const BACKGROUND: [f32; 4] = [0.02, 0.02, 0.025, 1.0];
+/// Pixels are drawn as squares of so many, where the device's limits allow, and averaged.
+const SUPERSAMPLING: u32 = 2;
+/// Nothing: the background comes when the picture is composed.
+const CLEAR: [f32; 4] = [0.0; 4];
 
 /// Options of `render`.
 #[derive(Args)]
@@ -45,7 +47,7 @@ pub struct Arguments {
     #[arg(
         long,
         value_name = "YAW,PITCH,ZOOM",
-        default_value = "30,20,1",
+        default_value = "40,22,1",
         allow_hyphen_values = true
     )]
     camera: Camera,
@@ -74,7 +76,8 @@ struct Scene<'a> {
     model: &'a Model,
     method: &'a str,
     cut: Cut,
-    view: View,
+    camera: Camera,
+    aspect: f32,
     shading: Shading,
     wireframe: bool,
     ring_bytes: u64,
@@ -120,15 +123,23 @@ fn draw_picture(
             remedy: "choose another device or leave it out".into(),
         });
     }
-    let target = OffscreenTarget::new(&gpu.device, width, height, SAMPLES)?;
-    let aspect = width as f32 / height as f32;
-    let (low, high) = model.mesh().bounds();
-    let bounds = (low - model.centre(), high - model.centre());
+    let widest = gpu
+        .device
+        .limits()
+        .max_framebuffer_width
+        .min(gpu.device.limits().max_framebuffer_height);
+    let factor = if width.max(height) <= widest / SUPERSAMPLING {
+        SUPERSAMPLING
+    } else {
+        1
+    };
+    let target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
     let scene = Scene {
         model,
         method: &arguments.cut.method,
         cut: arguments.cut.cut(),
-        view: arguments.camera.frame(bounds, aspect),
+        camera: arguments.camera,
+        aspect: width as f32 / height as f32,
         shading: arguments.shading,
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
@@ -136,7 +147,10 @@ fn draw_picture(
         load_seconds,
     };
     let stats = progress::during("drawing", |_| draw(gpu, &target, &scene))?;
-    Ok((target.read_pixels(), stats))
+    Ok((
+        picture::compose(&target.read_pixels(), width, height, factor),
+        stats,
+    ))
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
@@ -204,20 +218,21 @@ fn draw_frame(
         .then(|| StatisticsQuery::new(&gpu.device))
         .transpose()?;
     let device = gpu.device.raw();
+    let view = scene.frame(drawing.surface().prepared());
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         drawing.surface().cmd_prepare(device, cmd);
         if let Some(query) = &query {
             query.cmd_reset(cmd);
         }
-        target.begin(cmd, BACKGROUND);
+        target.begin(cmd, CLEAR);
         if let Some(query) = &query {
             query.cmd_begin(cmd);
         }
         drawing.cmd_draw(
             cmd,
             &pipelines[0],
-            &scene.view(scene.shading.code()),
+            &library_view(&view, scene.shading.code()),
             scene.cut,
             batches,
         );
@@ -232,7 +247,7 @@ fn draw_frame(
             drawing.cmd_draw(
                 cmd,
                 lines,
-                &scene.view(abi::SHADING_LINES),
+                &library_view(&view, abi::SHADING_LINES),
                 scene.cut,
                 &again,
             );
@@ -301,17 +316,29 @@ fn statistics(
 }
 
 impl Scene<'_> {
-    fn view(&self, shading: u32) -> gpu::View {
-        let eye = self
-            .view
-            .eye_from_model
-            .inverse()
-            .transform_point3(Vec3::ZERO);
-        gpu::View {
-            clip_from_model: self.view.clip_from_model().to_cols_array_2d(),
-            eye: eye.to_array(),
-            shading,
-        }
+    /// Frames the surface itself: the control mesh may reach far beyond it.
+    fn frame(&self, prepared: &Prepared) -> View {
+        let positions = self.model.positions();
+        let samples = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]].map(Vec2::from);
+        let points = prepared.passes.iter().flat_map(|pass| {
+            let positions = &positions;
+            let patches = 0..pass.patches.len();
+            patches.flat_map(move |patch| {
+                samples.map(|uv| pass.evaluate(positions, patch, uv).position)
+            })
+        });
+        self.camera
+            .frame(&points.collect::<Vec<Vec3>>(), self.aspect)
+    }
+}
+
+/// The view as the library takes it.
+fn library_view(view: &View, shading: u32) -> gpu::View {
+    let eye = view.eye_from_model.inverse().transform_point3(Vec3::ZERO);
+    gpu::View {
+        clip_from_model: view.clip_from_model().to_cols_array_2d(),
+        eye: eye.to_array(),
+        shading,
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod csv;
 pub mod obj;
 mod pending;
+pub mod picture;
 pub mod ply;
 pub mod png;
 

@@ -8,13 +8,15 @@ struct Surface {
     vec3 dv;
 };
 
-// Unit length, or zero where there is no direction.
+// Unit length, or zero where there is no direction. Scaled first, so that no square leaves the range of floats.
 vec3 normalize_or_zero(vec3 v) {
-    float length_squared = dot(v, v);
-    return length_squared > 0.0 ? v * inversesqrt(length_squared) : vec3(0.0);
+    float greatest = max(abs(v.x), max(abs(v.y), abs(v.z)));
+    if (greatest == 0.0) return vec3(0.0);
+    v /= greatest;
+    return v * inversesqrt(dot(v, v));
 }
 
-// The tangents are scaled first: far down a quadtree their product would leave the range of floats.
+// The tangents are made unit vectors first: far down a quadtree, and in tiny or enormous models, their product would leave that range.
 vec3 surface_normal(Surface surface) {
     return normalize_or_zero(cross(normalize_or_zero(surface.du), normalize_or_zero(surface.dv)));
 }

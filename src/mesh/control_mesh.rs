@@ -258,7 +258,7 @@ impl ControlMeshBuilder {
             face_sizes,
         } = self;
         mesh.face_offsets = offsets(&face_sizes, mesh.face_vertices.len())?;
-        check_positions(&mesh.positions)?;
+        check_positions(&mesh)?;
         check_faces(&mesh)?;
         check_tags(&mesh)?;
         Ok(mesh)
@@ -290,15 +290,27 @@ fn offsets(face_sizes: &[u32], vertices: usize) -> Result<Vec<u32>> {
         .collect())
 }
 
-fn check_positions(positions: &[DVec3]) -> Result<()> {
-    match positions.iter().position(|p| !p.is_finite()) {
-        None => Ok(()),
-        Some(vertex) => Err(Error::input(
+/// How far apart vertices may be: the GPU takes them as f32 relative to the middle, and sums stay below 3.4e38.
+const GREATEST_EXTENT: f64 = 1e36;
+
+fn check_positions(mesh: &ControlMesh) -> Result<()> {
+    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
+        return Err(Error::input(
             Place::Vertex(vertex),
-            format!("its position {} is not finite", positions[vertex]),
+            format!("its position {} is not finite", mesh.positions[vertex]),
             "replace NaN and infinite coordinates by numbers",
-        )),
+        ));
     }
+    let (low, high) = mesh.bounds();
+    let extent = (high - low).max_element();
+    if extent <= GREATEST_EXTENT {
+        return Ok(());
+    }
+    Err(Error::input(
+        Place::Mesh,
+        format!("it is {extent:e} across, more than single precision can hold"),
+        "scale it down to 1e36 or less",
+    ))
 }
 
 fn check_faces(mesh: &ControlMesh) -> Result<()> {

@@ -126,11 +126,17 @@ pub struct Surface {
 impl Surface {
     /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel.
     pub fn normal(&self) -> Vec3 {
-        let normal = self
-            .du
-            .normalize_or_zero()
-            .cross(self.dv.normalize_or_zero());
-        normal.normalize_or_zero()
+        normalized(normalized(self.du).cross(normalized(self.dv)))
+    }
+}
+
+/// Unit length, or zero where there is no direction. Scaled first, so that no square leaves the range of floats.
+fn normalized(v: Vec3) -> Vec3 {
+    let greatest = v.abs().max_element();
+    if greatest == 0.0 {
+        Vec3::ZERO
+    } else {
+        (v / greatest).normalize()
     }
 }
 
@@ -141,6 +147,14 @@ impl Pass {
     /// Evaluates patch `patch` at `uv` of its own domain.
     pub fn evaluate(&self, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
         (self.twin)(self, positions, patch, uv)
+    }
+
+    /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in
+    /// `glsl/surface.tese`.
+    pub fn texture_coordinates(&self, patch: usize, uv: [f32; 2]) -> [f32; 2] {
+        let [a, b, c, d] = self.texture[patch].map(Vec2::from);
+        let (bottom, top) = (a.lerp(b, uv[0]), d.lerp(c, uv[0]));
+        bottom.lerp(top, uv[1]).to_array()
     }
 
     /// The points that patch `patch` needs in the ring at `level`.

@@ -151,7 +151,8 @@ fn once_each(captured: &[abi::Captured], expected: u32) -> Vec<abi::Captured> {
 /// Adds the points and triangles of captured patches.
 fn add_patches(surface: &mut Surface, captured: &[abi::Captured], model: &Model, pass: &Pass) {
     for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {
-        let patch = &pass.patches[vertices[0].patch_number as usize];
+        let number = vertices[0].patch_number as usize;
+        let patch = &pass.patches[number];
         let first = surface.points.len() as u32;
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
         let triangles = triangulate(&uv)
@@ -163,6 +164,7 @@ fn add_patches(surface: &mut Surface, captured: &[abi::Captured], model: &Model,
             uv: to_ptex(patch, vertex.uv),
             position: (Vec3::from(vertex.position).as_dvec3() + model.centre()).to_array(),
             normal: vertex.normal,
+            texture: pass.texture_coordinates(number, vertex.uv),
         }));
     }
 }

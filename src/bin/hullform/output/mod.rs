@@ -45,6 +45,8 @@ pub struct Point {
     pub position: [f64; 3],
     /// The surface's unit normal.
     pub normal: [f32; 3],
+    /// Texture coordinates; the face's own u and v where the model has none.
+    pub texture: [f32; 2],
 }
 
 impl Format {
@@ -87,6 +89,7 @@ pub(crate) mod tests {
             uv,
             position,
             normal: [0.0, 0.0, 1.0],
+            texture: uv,
         };
         Surface {
             points: vec![

@@ -4,7 +4,7 @@ use crate::output::Surface;
 use std::io::{self, Write};
 
 /// A vertex's properties, in the order of the bytes.
-const VERTEX: [&str; 9] = [
+const VERTEX: [&str; 11] = [
     "double x",
     "double y",
     "double z",
@@ -13,6 +13,8 @@ const VERTEX: [&str; 9] = [
     "float nz",
     "float u",
     "float v",
+    "float s",
+    "float t",
     "uint face",
 ];
 
@@ -23,7 +25,7 @@ pub fn write(out: &mut dyn Write, surface: &Surface) -> io::Result<()> {
         for number in point.position {
             out.write_all(&number.to_le_bytes())?;
         }
-        for number in point.normal.iter().chain(&point.uv) {
+        for number in point.normal.iter().chain(&point.uv).chain(&point.texture) {
             out.write_all(&number.to_le_bytes())?;
         }
         out.write_all(&point.face.to_le_bytes())?;
@@ -59,10 +61,10 @@ mod tests {
         let end = b"end_header\n";
         let body = bytes.windows(end.len()).position(|part| part == end);
         let body = &bytes[body.expect("a header") + end.len()..];
-        assert_eq!(body.len(), 3 * (3 * 8 + 5 * 4 + 4) + (1 + 3 * 4));
+        assert_eq!(body.len(), 3 * (3 * 8 + 7 * 4 + 4) + (1 + 3 * 4));
         assert_eq!(body[8..16], (-0.1f64).to_le_bytes());
-        assert_eq!(body[44..48], 7u32.to_le_bytes());
-        assert_eq!(body[3 * 48..][..5], [3, 0, 0, 0, 0]);
+        assert_eq!(body[52..56], 7u32.to_le_bytes());
+        assert_eq!(body[3 * 56..][..5], [3, 0, 0, 0, 0]);
         let header = String::from_utf8_lossy(&bytes);
         assert!(header.contains("element vertex 3\n") && header.contains("element face 1\n"));
     }

@@ -346,13 +346,13 @@ fn render_pass(device: &ash::Device) -> Result<vk::RenderPass, vk::Result> {
 fn view(model: &Model) -> View {
     let (low, high) = model.mesh().bounds();
     let radius = 0.5 * (high - low).length() as f32;
-    let distance = 3.0 * radius;
+    let distance = 2.0 * radius;
     let eye_from_model = Mat4::from_translation(Vec3::new(0.0, 0.0, -distance))
         * Mat4::from_rotation_x(0.35)
         * Mat4::from_rotation_y(-0.6);
     let (aspect, near) = (WIDTH as f32 / HEIGHT as f32, distance - radius);
     let clip_from_eye =
-        glam::camera::rh::proj::vulkan::perspective(0.7, aspect, near, 5.0 * radius);
+        glam::camera::rh::proj::vulkan::perspective(0.7, aspect, near, distance + radius);
     View {
         clip_from_model: (clip_from_eye * eye_from_model).to_cols_array_2d(),
         eye: eye_from_model

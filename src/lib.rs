@@ -1,5 +1,101 @@
 //! hullform turns a control mesh into plans on the CPU once, and then one patch a face through Vulkan's control and
 //! evaluation shaders every frame.
+//!
+//! # The tour
+//!
+//! A mesh passes through the modules in this order:
+//!
+//! 1. [`mesh`]: the control mesh, from slices, from an OBJ file with subdivision tags, or built in. It is checked when it is made.
+//! 2. [`subdivision`]: the truth. The Catmull-Clark limit at any point, in f64, by recursive refinement.
+//! 3. [`plan`]: what a face needs to know about its limit apart from positions: a quadtree over its domain and stencils over its 1-ring.
+//! 4. [`method`](mod@method): a way to draw. It prepares a model as tables for the GPU, and says what it promises. Each comes with a twin, which
+//!    evaluates in f32 from the same tables what the shader evaluates.
+//! 5. [`tessellation`]: tess levels that agree on both sides of every edge.
+//! 6. `gpu` (feature `vulkan`): tables to buffers, pipelines, and draws recorded into your command buffer.
+//! 7. `host` (feature `host`): a device and an offscreen picture, for those who have none.
+//!
+//! Up to `tessellation` everything is plain CPU code. It is not a helper of the GPU: it is what the GPU is tested against.
+//!
+//! ```
+//! use hullform::glam::Vec2;
+//! use hullform::mesh::{ControlMesh, Model};
+//! use hullform::method::{from_ptex, method};
+//! use hullform::plan::PlanOptions;
+//! use hullform::subdivision::LimitSurface;
+//!
+//! // A cube whose top is held by a semi-sharp crease.
+//! let positions = [
+//!     [-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0],
+//!     [-1.0, 1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0],
+//! ];
+//! let faces = [
+//!     0, 1, 2, 3, /* bottom */ 7, 6, 5, 4, /* top */ 3, 2, 6, 7, /* sides */ 2, 1, 5, 6, 1, 0, 4, 5, 0, 3, 7, 4,
+//! ];
+//! let mut builder = ControlMesh::builder(&positions, &[4; 6], &faces);
+//! for [a, b] in [[4, 5], [5, 6], [6, 7], [7, 4]] {
+//!     builder = builder.crease(a, b, 2.5);
+//! }
+//! let mesh = builder.build()?;
+//!
+//! // The truth: position and normal in the middle of the top, which is face 1.
+//! let truth = LimitSurface::new(&mesh).evaluate(1, 0.5, 0.5).expect("face 1 is no hole");
+//! assert!(truth.normal().y > 0.999);
+//!
+//! // What the GPU would get, by the quadtree method: here one pass of six patches and their plans.
+//! let model = Model::new(mesh);
+//! let prepared = (method("quadtree")?.prepare)(&model, PlanOptions::default())?;
+//! let pass = &prepared.passes[0];
+//! assert_eq!(pass.patches.len(), 6);
+//!
+//! // And what its evaluation shader would make of that, by the twin. A patch may be turned against its face, so that faces share plans;
+//! // positions are relative to the model's centre.
+//! let patch = pass.patches.iter().position(|patch| patch.ptex == 1).expect("each face has a patch");
+//! let uv = from_ptex(&pass.patches[patch], [0.5, 0.5]);
+//! let twin = pass.evaluate(&model.positions(), patch, Vec2::from(uv));
+//! let position = twin.position.as_dvec3() + model.centre();
+//! assert!(position.distance(truth.position) < 1e-6);
+//! # Ok::<(), hullform::Error>(())
+//! ```
+//!
+//! `examples/evaluate_limit.rs` asks for single points; `examples/headless_png.rs` is the integration guide, from the instance to the
+//! picture.
+//!
+//! # Features
+//!
+//! | feature | default | what it adds |
+//! | --- | --- | --- |
+//! | `vulkan` | through `host` | `gpu`: the layer over a borrowed Vulkan device; without it the crate is pure CPU code |
+//! | `host` | yes | `host`: instance, device choice and offscreen target |
+//! | `cli` | yes | the `hullform` program |
+//! | `shaderc` | no | compile `glsl/` at build time instead of embedding the modules in `glsl/spirv` |
+//!
+//! An engine takes `default-features = false, features = ["vulkan"]`.
+//!
+//! # For engines
+//!
+//! The library borrows device and allocator, records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
+//! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
+//!
+//! **The device** needs Vulkan 1.2 and three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`.
+//! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on.
+//!
+//! **The render pass** needs one thing: the subpass must depend on itself as `gpu::ring::ring_dependency` says. Control shaders hand points
+//! to evaluation shaders through a ring in memory; batches that use it one after another have a barrier between them.
+//!
+//! **Dynamic rendering** allows no such barrier. Set `gpu::SurfaceOptions::barriers` to false; before each batch whose `gpu::Batch::waits`
+//! is true, end rendering, record `gpu::ring::cmd_ring_barrier` and your attachments' barrier, and begin again with `LOAD`. With a ring
+//! that holds the whole model there is one batch that uses it, and nothing to wait for.
+//!
+//! **Frames in flight** may share a surface on one queue: `cmd_prepare` waits for the shaders of earlier frames. Frames that shall overlap
+//! need a surface each. What the host writes (positions, slots) and reads (counters, captures) is not doubled: see there.
+//!
+//! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
+//! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with
+//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Set 0 and the first 112 bytes of push constants are the library's.
+//!
+//! **Skinning and morphing.** Positions are read in one function, `control_vertex` in `glsl/lib/control_vertex.glsl`. Put your own in its
+//! place: plans do not depend on positions. Or write deformed positions into `gpu::TessellatedSurface::position_buffer` with a compute
+//! shader.
 
 pub mod abi;
 pub mod error;
@@ -15,3 +111,7 @@ pub mod subdivision;
 pub mod tessellation;
 
 pub use error::{Error, Place, Result};
+// The crates whose types stand in this one's interface, in the version that it uses.
+pub use glam;
+#[cfg(feature = "vulkan")]
+pub use {ash, gpu_allocator};

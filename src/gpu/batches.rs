@@ -53,6 +53,13 @@ pub struct Batch {
     pub ring_batch: u32,
 }
 
+impl Batch {
+    /// Whether it must wait until an earlier batch is done with the ring.
+    pub fn waits(&self) -> bool {
+        self.points > 0 && self.ring_batch > 0
+    }
+}
+
 /// What bounds a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Bounds {

@@ -41,31 +41,35 @@ struct Draw {
 }
 
 impl TessellatedSurface {
-    /// Records the copy of everything to the device.
+    /// Records the copy of everything to the device, after what earlier commands of the queue still draw, and before whatever draws next.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made this surface, outside of a render pass.
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass. The surface lives until the commands have been
+    /// executed, and neither [`finish_upload`](Self::finish_upload) nor [`write_positions`](Self::write_positions) is called before.
     pub unsafe fn cmd_upload(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
         let Some((staging, copies)) = self.buffers.uploads() else {
             return;
         };
-        for (buffer, copy) in copies {
-            // SAFETY: the copies were made with the buffers' sizes.
-            unsafe { device.cmd_copy_buffer(cmd, staging, buffer, &[copy]) };
-        }
         let stages = vk::PipelineStageFlags::VERTEX_SHADER
             | RING_STAGES
             | vk::PipelineStageFlags::FRAGMENT_SHADER;
+        let transfer = vk::PipelineStageFlags::TRANSFER;
         // SAFETY: this function's contract.
         unsafe {
             cmd_make_visible(
                 device,
                 cmd,
-                vk::PipelineStageFlags::TRANSFER,
-                stages,
-                vk::AccessFlags::SHADER_READ,
+                stages | transfer,
+                transfer,
+                vk::AccessFlags::TRANSFER_WRITE,
             )
         };
+        for (buffer, copy) in copies {
+            // SAFETY: the copies were made with the buffers' sizes.
+            unsafe { device.cmd_copy_buffer(cmd, staging, buffer, &[copy]) };
+        }
+        // SAFETY: this function's contract.
+        unsafe { cmd_make_visible(device, cmd, transfer, stages, vk::AccessFlags::SHADER_READ) };
     }
 
     /// Gives the staging memory back. Positions cannot be replaced after this.
@@ -81,8 +85,11 @@ impl TessellatedSurface {
 
     /// Records what a frame needs before its render pass: counters at zero, and the ring free of earlier frames' use.
     ///
+    /// It waits for the control and evaluation shaders of all earlier commands on the queue. Frames that shall overlap need a surface each.
+    ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made this surface, outside of a render pass.
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, and is submitted to the queue of the
+    /// surface's earlier frames. The surface lives until the commands have been executed.
     pub unsafe fn cmd_prepare(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
         let transfer = vk::PipelineStageFlags::TRANSFER;
         // SAFETY: this function's contract; vkCmdFillBuffer is not allowed inside a render pass, hence this function.
@@ -108,11 +115,18 @@ impl TessellatedSurface {
 
     /// Records the draw of a batch. A batch that uses the ring after another waits for that one's evaluation shaders.
     ///
+    /// Binds a pipeline and set 0, and pushes constants from offset 0: an engine binds its own again afterwards.
+    ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made this surface, inside subpass 0 of the render pass of `pipelines`, after
-    /// [`cmd_prepare`](Self::cmd_prepare); viewport and scissor are set; `pipelines` were built for the spacing of `cut`, and `batch` is one
-    /// of [`batches`](Self::batches) for `cut`. The batches of a frame are recorded in their order. With [`Slots::Host`],
-    /// [`write_slots`](Self::write_slots) was called for them.
+    /// `cmd` is recording on `device`, which made this surface, after [`cmd_upload`](Self::cmd_upload) and
+    /// [`cmd_prepare`](Self::cmd_prepare) (of this frame), inside subpass 0 of a render pass that is compatible with that of `pipelines`
+    /// and whose subpass declares [`ring_dependency`](super::ring::ring_dependency), or, without
+    /// [`barriers`](super::SurfaceOptions::barriers), inside any rendering that suits `pipelines`. Viewport and scissor are set.
+    /// `pipelines` were built for this surface's [`Prepared`](crate::method::Prepared) and the spacing of `cut`, `layout` is the one that
+    /// made them and the surface. `batch` is one of [`batches`](Self::batches) for `cut`, with a level of at most
+    /// [`greatest_level`](super::SurfaceOptions::greatest_level), or its [`again`](Self::again); each is recorded at most once after
+    /// `cmd_prepare`, in their order. With [`Slots::Host`], [`write_slots`](Self::write_slots) was called for them. Surface, pipelines
+    /// and layout live until the commands have been executed.
     #[allow(clippy::too_many_arguments)]
     pub unsafe fn cmd_draw(
         &self,
@@ -136,7 +150,7 @@ impl TessellatedSurface {
         // synchronization is a matter of whole buffers.
         let mut waits = batch.ring_batch > 0;
         for draw in self.draws(cut, batch) {
-            if waits && batch.points > 0 {
+            if waits && batch.points > 0 && self.options.barriers {
                 // SAFETY: this function's contract.
                 unsafe { cmd_ring_barrier(device, cmd) };
             }
@@ -208,7 +222,8 @@ impl TessellatedSurface {
     /// Records the copy of what was counted and captured to where the host can read it.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, after the draws.
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, after the draws. The surface lives until the
+    /// commands have been executed.
     pub unsafe fn cmd_read_back(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
         let copy = vk::BufferCopy::default().size(8);
         let (transfer, host) = (

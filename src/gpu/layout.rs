@@ -74,7 +74,7 @@ impl Layout {
     /// Destroys both.
     ///
     /// # Safety
-    /// `device` made them, and nothing that was made with them is recorded any more.
+    /// `device` made them, no command will be recorded with them again, and no submitted one still uses them.
     pub unsafe fn destroy(self, device: &ash::Device) {
         // SAFETY: this function's contract.
         unsafe {

@@ -10,7 +10,8 @@ use crate::tessellation::Spacing;
 /// What pipelines draw into.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// The render pass; its subpass 0 has one colour attachment and depth, and the dependency of [`ring_dependency`](super::ring::ring_dependency).
+    /// The render pass; its subpass 0 has one colour attachment and depth, and depends on itself as
+    /// [`ring_dependency`](super::ring::ring_dependency) says.
     pub render_pass: vk::RenderPass,
     /// Its samples a pixel.
     pub samples: vk::SampleCountFlags,
@@ -34,10 +35,12 @@ pub struct Pipelines {
 }
 
 impl Pipelines {
-    /// Builds the pipelines of every pass.
+    /// Builds the pipelines of every pass. Viewport and scissor are dynamic states. Cache and render pass may go afterwards: any compatible
+    /// render pass will do for drawing.
     ///
     /// # Safety
-    /// `device` is live and has the features that [`Support`](super::Support) asks for; `layout`, `cache` and `target` are of this device.
+    /// `device` is live and has the features that [`Support`](super::Support) asks for, with [`Fill::Lines`] also `fillModeNonSolid`; `layout`,
+    /// `cache` (or null) and `target` are of this device.
     pub unsafe fn new(
         device: &ash::Device,
         layout: &Layout,
@@ -68,6 +71,18 @@ impl Pipelines {
             }
         }
         Ok(pipelines)
+    }
+
+    /// Pipelines of the engine's own, one a pass of [`Prepared`] in order: other shaders, other targets, other states.
+    ///
+    /// They are drawn like any others. [`destroy`](Self::destroy) destroys them; an engine that keeps its handles drops this instead.
+    ///
+    /// # Safety
+    /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input. Its layout is
+    /// compatible with [`Layout::pipeline`] for set 0 and has the same push constants; further sets are the engine's. Its stages read
+    /// `abi::Frame` and set 0 as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
+    pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>) -> Pipelines {
+        Pipelines { pipelines }
     }
 
     /// The pipeline of a pass.

@@ -38,10 +38,14 @@ pub struct SurfaceOptions {
     /// How many times the batches are drawn after one [`cmd_prepare`](TessellatedSurface::cmd_prepare); see
     /// [`again`](TessellatedSurface::again).
     pub rounds: u32,
+    /// Whether [`cmd_draw`](TessellatedSurface::cmd_draw) records the barriers that batches need. Switch it off for dynamic rendering, which
+    /// allows no such barrier: before each batch that [waits](Batch::waits) the engine then ends rendering, records
+    /// [`cmd_ring_barrier`](super::ring::cmd_ring_barrier) with whatever its attachments need, and begins again with `LOAD`.
+    pub barriers: bool,
 }
 
 impl Default for SurfaceOptions {
-    /// A ring of 1 MiB with counters, no capture, every level.
+    /// A ring of 1 MiB with counters, no capture, every level, barriers by `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
             ring_bytes: 1 << 20,
@@ -49,6 +53,7 @@ impl Default for SurfaceOptions {
             capture_vertices: 0,
             rounds: 1,
             greatest_level: 64.0,
+            barriers: true,
         }
     }
 }
@@ -90,7 +95,8 @@ impl TessellatedSurface {
     /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch at `greatest_level`; Vulkan's own.
     ///
     /// # Safety
-    /// `device` is live and has the features that [`Support`](super::Support) asks for; `allocator` and `layout` were made for it.
+    /// `device` is live and has the features that [`Support`](super::Support) asks for; `allocator` and `layout` were made for it. All
+    /// commands of this surface go to queues of one family: the buffers are `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
         allocator: &mut Allocator,
@@ -245,6 +251,9 @@ impl TessellatedSurface {
 
     /// Replaces the control vertices, by positions relative to the model's centre; they arrive with the next [`cmd_upload`](Self::cmd_upload).
     ///
+    /// The staging memory is written at once: no submitted [`cmd_upload`](Self::cmd_upload) may still read it. An engine that computes
+    /// positions on the device writes the [`position_buffer`](Self::position_buffer) instead.
+    ///
     /// # Panics
     /// When the number of positions is not that of the model, or after [`finish_upload`](Self::finish_upload).
     pub fn write_positions(&mut self, positions: &[[f32; 3]]) {
@@ -260,6 +269,14 @@ impl TessellatedSurface {
             .staging
             .expect("positions are staged before the upload is finished");
         self.buffers.all[staging].write(copy.src_offset, bytes);
+    }
+
+    /// The control vertices on the device, three floats each, relative to the model's centre: a storage buffer that is also a copy's target.
+    ///
+    /// Whoever writes it waits for earlier frames' vertex and control shaders, and makes the writes visible to `SHADER_READ` in the
+    /// vertex, control and evaluation stages before the next draw.
+    pub fn position_buffer(&self) -> vk::Buffer {
+        self.buffers.all[self.buffers.positions].raw()
     }
 
     /// Writes the slots that the host gives at a cut.
@@ -285,7 +302,7 @@ impl TessellatedSurface {
     /// Destroys everything.
     ///
     /// # Safety
-    /// `device` and `allocator` are those that made it, and no submitted command still uses it.
+    /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
     pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
         // SAFETY: this function's contract. The sets go with their pool; a null pool is fine.
         unsafe { device.destroy_descriptor_pool(self.pool, None) };

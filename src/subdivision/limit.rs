@@ -39,13 +39,34 @@ pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<Limi
         return None;
     }
     let ring = Ring { topology, fan };
-    Some(match rule(sharpness, sharp) {
+    let own = match rule(sharpness, sharp) {
         Rule::Smooth if ring.fan.edges.len() == 2 => ring.valence_two(),
         Rule::Smooth => ring.smooth(),
         Rule::Crease => ring.crease(),
         Rule::Corner => ring.corner(),
         Rule::Dart => ring.dart(),
-    })
+    };
+    Some(own.turned(corner))
+}
+
+impl LimitStencil {
+    /// From the frame of a corner, whose u runs to the next vertex and v to the previous one, to that of the face.
+    fn turned(self, corner: u32) -> LimitStencil {
+        let LimitStencil { position, du, dv } = self;
+        let (du, dv) = match corner {
+            0 => (du, dv),
+            1 => (negated(dv), du),
+            2 => (negated(du), negated(dv)),
+            _ => (dv, negated(du)),
+        };
+        LimitStencil { position, du, dv }
+    }
+}
+
+fn negated(mask: Mask) -> Mask {
+    mask.into_iter()
+        .map(|(vertex, weight)| (vertex, -weight))
+        .collect()
 }
 
 /// How much more than its faces an edge weighs in a mode of frequency `angle` around a vertex.
@@ -137,13 +158,9 @@ impl Ring<'_> {
                 (self.far(second % 2), -0.25 * sign),
             ])
         };
-        let turned = across(-1.0)
-            .iter()
-            .map(|&(vertex, weight)| (vertex, -weight))
-            .collect();
         LimitStencil {
             du: across(1.0),
-            dv: turned,
+            dv: negated(across(-1.0)),
             ..self.smooth()
         }
     }
@@ -222,12 +239,7 @@ impl Ring<'_> {
         } else if at == k - 1 {
             (self.sector_mode(1), self.along(k))
         } else {
-            let next = self
-                .sector_mode(2)
-                .iter()
-                .map(|&(vertex, weight)| (vertex, -weight))
-                .collect();
-            (self.sector_mode(1), next)
+            (self.sector_mode(1), negated(self.sector_mode(2)))
         };
         LimitStencil { position, du, dv }
     }
@@ -246,10 +258,7 @@ impl Ring<'_> {
         let angle = 2.0 * PI / n as f64;
         (
             self.mode(0.0, |_| 1.0),
-            self.mode(angle, |i| -(angle * (i - at as f64 - 0.5)).sin())
-                .iter()
-                .map(|&(v, w)| (v, -w))
-                .collect(),
+            self.mode(angle, |i| (angle * (i - at as f64 - 0.5)).sin()),
         )
     }
 

@@ -184,7 +184,8 @@ proptest! {
                 continue;
             };
             prop_assert!((linear * a.position + shift).distance(b.position) < 1e-12);
-            let scale = 1e-12 * (1.0 + a.du.length() + a.dv.length());
+            // Derivatives at semi-sharp vertices grow out of up to ten levels.
+            let scale = 1e-11 * (1.0 + a.du.length() + a.dv.length());
             prop_assert!((linear * a.du).distance(b.du) < scale);
             prop_assert!((linear * a.dv).distance(b.dv) < scale);
         }

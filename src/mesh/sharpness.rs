@@ -2,6 +2,8 @@
 //!
 //! Sharpness is f32 as in OBJ tags and in OpenSubdiv, so that "has decayed to zero" means the same in both.
 
+use smallvec::SmallVec;
+
 use crate::mesh::{CreaseMethod, INFINITE_SHARPNESS};
 
 /// Whether a sharpness never decays.
@@ -33,7 +35,7 @@ pub fn decayed(sharpness: f32) -> f32 {
 /// Chaikin's rule takes three quarters of an edge's sharpness and one quarter of the mean of the other semi-sharp edges' before it decays.
 pub fn decayed_around_vertex(method: CreaseMethod, edges: &[f32]) -> Vec<f32> {
     let semi_sharp = edges.iter().filter(|&&s| is_semi_sharp(s)).count();
-    let sum: f32 = edges.iter().filter(|&&s| is_semi_sharp(s)).sum();
+    let sum = sum(edges.iter().copied().filter(|&s| is_semi_sharp(s)));
     let next = |&sharpness: &f32| {
         if method == CreaseMethod::Uniform || semi_sharp < 2 || !is_semi_sharp(sharpness) {
             return decayed(sharpness);
@@ -42,6 +44,13 @@ pub fn decayed_around_vertex(method: CreaseMethod, edges: &[f32]) -> Vec<f32> {
         decayed(0.75 * sharpness + 0.25 * others)
     };
     edges.iter().map(next).collect()
+}
+
+/// The sum in an order of its own: faces that list the edges of a vertex in different orders must find the same bits.
+pub fn sum(values: impl Iterator<Item = f32>) -> f32 {
+    let mut values: SmallVec<[f32; 8]> = values.collect();
+    values.sort_unstable_by(f32::total_cmp);
+    values.iter().sum()
 }
 
 /// Which mask refines a vertex.

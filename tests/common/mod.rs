@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod meshes;
+pub mod surfaces;
 
 use std::path::PathBuf;
 

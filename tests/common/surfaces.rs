@@ -72,8 +72,8 @@ impl Surfaces {
                         .as_dvec3()
                         .angle_between(truth.normal())
                         .to_degrees();
-                    // Where the surface folds or stands still, f32 has no normal.
-                    let firm = du.cross(dv).length() > 0.05 && shortest > 1e-3;
+                    // Derivatives carry the rounding of positions times 64; where the surface folds or stands still, f32 has no normal.
+                    let firm = du.cross(dv).length() * shortest > 0.01;
                     if firm && !(angle <= worst.angle) {
                         (worst.angle, worst.steep) = (angle, (patch.ptex, uv));
                     }

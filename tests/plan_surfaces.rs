@@ -171,6 +171,18 @@ fn chaikin_creases_of_varying_sharpness_lead_to_the_limit() {
     }
 }
 
+/// Found by `every_deepest_level_is_exact_up_to_its_own_tess_level`: after one level, each cell still touches a corner.
+#[test]
+fn deepest_level_1_is_exact_at_tess_level_2() {
+    let options = PlanOptions {
+        max_level: 1,
+        direct_creases: true,
+    };
+    let surfaces = Surfaces::of(builtin("ngons").expect("a built-in shape"), options);
+    let worst = surfaces.worst(1, |patch| tess_coordinates(&[2], 4, patch));
+    worst.hold("level 1");
+}
+
 #[test]
 fn direct_creases_save_nodes() {
     let built = |direct_creases| {

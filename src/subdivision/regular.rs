@@ -128,7 +128,7 @@ fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPo
         (Rule::Smooth, 4) if fan.closed => Some(interior(&end, &far, fan.at, None)),
         (Rule::Crease, 4) if fan.closed => {
             let crease = straight_crease(topology, own, &fan.edges, &sharp)?;
-            let follows_next = (fan.at + 4 - crease.0) % 2 == 0;
+            let follows_next = (fan.at + 4 - crease.0).is_multiple_of(2);
             Some(interior(&end, &far, fan.at, Some((follows_next, crease.1))))
         }
         // A page at a non-manifold vertex; see `limit`.

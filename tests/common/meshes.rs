@@ -285,8 +285,9 @@ impl Draft {
         let middle = self.vertex(self.middle(face));
         let ring = std::mem::take(&mut self.faces[face]);
         let triangle = |i: usize| vec![ring[i], ring[(i + 1) % ring.len()], middle];
-        self.faces[face] = triangle(0);
-        self.faces.extend((1..ring.len()).map(triangle));
+        let mut triangles = (0..ring.len()).map(triangle);
+        self.faces[face] = triangles.next().expect("a face has corners");
+        self.faces.extend(triangles);
     }
 
     fn lens(&mut self, face: u16, corner: u8) {

@@ -61,8 +61,8 @@ impl Surfaces {
                     let truth = truth.expect("patches are no holes");
                     let position = point.position.as_dvec3() + self.model.centre();
                     let distance = position.distance(truth.position) / self.diagonal;
-                    // NaN must not pass: it compares as if it were far.
-                    if !(distance <= worst.distance) {
+                    // NaN must not pass.
+                    if distance > worst.distance || distance.is_nan() {
                         (worst.distance, worst.far) = (distance, (patch.ptex, uv));
                     }
                     let (du, dv) = (truth.du.normalize_or_zero(), truth.dv.normalize_or_zero());
@@ -74,7 +74,7 @@ impl Surfaces {
                         .to_degrees();
                     // Derivatives carry the rounding of positions times 64; where the surface folds or stands still, f32 has no normal.
                     let firm = du.cross(dv).length() * shortest > 0.01;
-                    if firm && !(angle <= worst.angle) {
+                    if firm && (angle > worst.angle || angle.is_nan()) {
                         (worst.angle, worst.steep) = (angle, (patch.ptex, uv));
                     }
                     worst.points += 1;

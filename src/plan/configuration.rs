@@ -188,8 +188,8 @@ impl Configuration {
             .collect();
         let vertices = faces.iter().flatten().max().expect("a face has vertices") + 1;
         let mut sharpness = vec![0.0; vertices as usize];
-        for corner in &mut sharpness[..faces[0].len()] {
-            *corner = f32::from_bits(word());
+        for corner in 0..faces[0].len() {
+            sharpness[corner] = f32::from_bits(word());
         }
         let rest: Vec<u32> = words.collect();
         let edges: HashMap<[u32; 2], [f32; 3]> = rest

@@ -1,19 +1,29 @@
-//! The truth against OpenSubdivision's limits of the shared shapes.
+//! The truth against the reference limits of the shared shapes, point by point.
+//!
+//! Positions and derivatives agree to the references' own precision. Normals at ptex corners are compared apart: the references
+//! differentiate numerically there, after nine refinements. See [`Corner::slow`] for where that is not yet the limit.
 
 mod common;
 
-use glam::DVec3;
-use hullform::mesh::{ControlMesh, read_obj};
-use hullform::subdivision::{LimitSurface, Scheme};
+use std::path::Path;
 
-/// One line of a reference: ptex face, parameters, and what OpenSubdiv found there.
+use glam::DVec3;
+use hullform::mesh::sharpness::is_infinite;
+use hullform::mesh::topology::Topology;
+use hullform::mesh::{ControlMesh, read_obj};
+use hullform::subdivision::{LimitSample, LimitSurface, Scheme};
+
+/// Shapes whose faces name a vertex twice; the reader refuses them.
+const REFUSED: [&str; 2] = ["catmark_nonman_quadpole8", "catmark_nonman_edges"];
+
+/// One line of a reference: ptex face, parameters, and position and derivatives there, if there is a limit at all.
 struct Reference {
-    face: usize,
+    ptex: usize,
     uv: [f64; 2],
-    limit: Option<[DVec3; 3]>,
+    limit: Option<LimitSample>,
 }
 
-fn references(path: &std::path::Path) -> Vec<Reference> {
+fn references(path: &Path) -> Vec<Reference> {
     let text = std::fs::read_to_string(path.with_extension("limit.txt"))
         .expect("each shape has its reference");
     text.lines().map(parse).collect()
@@ -23,66 +33,162 @@ fn parse(line: &str) -> Reference {
     let words: Vec<&str> = line.split_whitespace().collect();
     let number = |i: usize| words[i].parse::<f64>().expect("references hold numbers");
     let vector = |i: usize| DVec3::new(number(i), number(i + 1), number(i + 2));
-    let limit = (words[3] != "none").then(|| [vector(3), vector(6), vector(9)]);
+    let limit = (words[3] != "none").then(|| LimitSample {
+        position: vector(3),
+        du: vector(6),
+        dv: vector(9),
+    });
     Reference {
-        face: number(0) as usize,
+        ptex: number(0) as usize,
         uv: [number(1), number(2)],
         limit,
     }
 }
 
-/// How far our limit of a shape is from the reference: positions over the diagonal, and normals in degrees.
-fn compare(name: &str, mesh: &ControlMesh, references: &[Reference], scheme: Scheme) -> (f64, f64) {
-    let surface = LimitSurface::of_scheme(mesh, scheme);
-    let diagonal = common::diagonal(mesh);
-    let mut worst = (0.0f64, 0.0f64);
-    for reference in references {
-        let [u, v] = reference.uv;
-        let sample = surface.evaluate(reference.face, u, v);
-        let (Some(sample), Some([position, du, dv])) = (sample, reference.limit) else {
-            assert_eq!(
-                sample.is_none(),
-                reference.limit.is_none(),
-                "{name} face {} ({u}, {v})",
-                reference.face
-            );
-            continue;
-        };
-        let distance = sample.position.distance(position) / diagonal;
-        let normal = du.normalize().cross(dv.normalize());
-        let angle = if normal.length() < 1e-6 {
-            0.0
-        } else {
-            sample.normal().angle_between(normal).to_degrees()
-        };
-        if std::env::var("VERBOSE").is_ok() && (distance > 1e-9 || angle > 1e-3) {
-            eprintln!(
-                "{name} face {} ({u}, {v}): {distance:.1e}, {angle:.4} degrees",
-                reference.face
-            );
-        }
-        worst = (worst.0.max(distance), worst.1.max(angle));
+/// The corner of a ptex face.
+#[derive(Default)]
+struct Corner {
+    /// The end of an infinitely sharp crease inside the mesh.
+    dart: bool,
+    /// An interior vertex of two faces.
+    valence_two: bool,
+    /// Where the references' normals have not converged: at darts; and at corners in a sector of several faces, where the surface has a
+    /// cusp or two modes contract alike, so that the normal approaches its limit as 0.65^level or 1 / level.
+    slow: bool,
+    /// Where derivatives have no length of their own.
+    extraordinary: bool,
+}
+
+/// The control vertex at a corner of a ptex face, if one is there: an n-gon's part has one at (0, 0) only.
+fn vertex_at(topology: &Topology, (face, corner): (u32, u32), uv: [f64; 2]) -> Option<(u32, u32)> {
+    let quad = topology.face(face).len() == 4;
+    match uv {
+        [0.0, 0.0] => Some((face, corner)),
+        [1.0, 0.0] if quad => Some((face, 1)),
+        [1.0, 1.0] if quad => Some((face, 2)),
+        [0.0, 1.0] if quad => Some((face, 3)),
+        _ => None,
     }
-    worst
+}
+
+fn corner(surface: &LimitSurface, ptex: usize, uv: [f64; 2]) -> Corner {
+    let topology = surface.topology();
+    let Some((face, corner)) = vertex_at(topology, surface.face_corner(ptex), uv) else {
+        // The centre of an n-gon, the middle of one of its edges, or no corner at all.
+        return Corner {
+            extraordinary: uv == [1.0, 1.0],
+            ..Corner::default()
+        };
+    };
+    let vertex = topology.face(face)[corner as usize];
+    let edges = topology.sharp_edges(vertex);
+    // What is semi-sharp has decayed in the limit.
+    let sharp = edges
+        .filter(|&edge| is_infinite(topology.edge(edge).sharpness))
+        .count();
+    let sharp_vertex = is_infinite(topology.vertex_sharpness(vertex));
+    let faces = topology.fan(face, corner).faces.len();
+    let dart = sharp == 1 && !sharp_vertex;
+    let regular = match sharp {
+        _ if sharp_vertex => 1,
+        0 => 4,
+        2 => 2,
+        _ => 1,
+    };
+    Corner {
+        dart,
+        valence_two: sharp == 0 && topology.vertex_edges(vertex).len() == 2,
+        slow: dart || (sharp_vertex || sharp > 2) && faces > 1,
+        extraordinary: dart || faces != regular,
+    }
+}
+
+/// The angle between two normals in degrees; none where the reference's tangents are parallel but for rounding.
+fn angle(ours: &LimitSample, reference: &LimitSample) -> f64 {
+    let normal = reference
+        .du
+        .normalize_or_zero()
+        .cross(reference.dv.normalize_or_zero());
+    if normal.length() < 1e-6 {
+        return 0.0;
+    }
+    ours.normal().angle_between(normal).to_degrees()
+}
+
+/// Holds one reference against the truth; whether it has a limit.
+fn hold(name: &str, surface: &LimitSurface, diagonal: f64, reference: &Reference) -> bool {
+    let &Reference { ptex, uv, .. } = reference;
+    let place = format!("{name}, ptex face {ptex} at {uv:?}");
+    let sample = surface.evaluate(ptex, uv[0], uv[1]);
+    assert_eq!(
+        sample.is_some(),
+        reference.limit.is_some(),
+        "{place}: a limit or none"
+    );
+    let (Some(sample), Some(limit)) = (sample, reference.limit) else {
+        return false;
+    };
+    let corner = corner(surface, ptex, uv);
+    let bound = match corner {
+        Corner { dart: true, .. } => 2e-5,
+        Corner {
+            valence_two: true, ..
+        } => 5e-7,
+        _ => 1e-9,
+    };
+    let distance = sample.position.distance(limit.position) / diagonal;
+    assert!(distance <= bound, "{place}: {distance:.1e} off");
+    if uv.iter().all(|x| x.fract() == 0.0) {
+        let angle = angle(&sample, &limit);
+        assert!(corner.slow || angle <= 0.01, "{place}: {angle:.4} degrees");
+    }
+    if !corner.extraordinary {
+        for (ours, theirs) in [(sample.du, limit.du), (sample.dv, limit.dv)] {
+            let distance = ours.distance(theirs) / diagonal;
+            assert!(distance <= 1e-8, "{place}: derivative {distance:.1e} off");
+        }
+    }
+    true
+}
+
+fn compare(name: &str, mesh: &ControlMesh, references: &[Reference]) {
+    let bilinear = name.starts_with("bilinear");
+    let scheme = if bilinear {
+        Scheme::Bilinear
+    } else {
+        Scheme::CatmullClark
+    };
+    let surface = LimitSurface::of_scheme(mesh, scheme);
+    assert_eq!(references.len(), 25 * surface.ptex_count(), "{name}");
+    let limits = references
+        .iter()
+        .filter(|reference| hold(name, &surface, common::diagonal(mesh), reference));
+    assert!(limits.count() > 0, "{name} has no limit anywhere");
 }
 
 #[test]
-fn limits_agree_with_opensubdiv() {
-    for path in common::obj_files("shapes") {
-        let name = common::stem(&path);
-        let scheme = if name.starts_with("bilinear") {
-            Scheme::Bilinear
-        } else {
-            Scheme::CatmullClark
-        };
-        let Ok(mesh) = read_obj(&path) else {
-            eprintln!("refused {name}");
-            continue;
-        };
+fn limits_agree_with_the_references_of_every_shape() {
+    let files = common::obj_files("shapes");
+    let mut compared = 0;
+    for path in &files {
+        let name = common::stem(path);
         if name.starts_with("loop") {
             continue;
         }
-        let (distance, angle) = compare(&name, &mesh, &references(&path), scheme);
-        eprintln!("{name:32} {distance:.1e} {angle:.1e}");
+        let mesh = read_obj(path);
+        assert_eq!(
+            mesh.is_err(),
+            REFUSED.contains(&name.as_str()),
+            "{name} is refused, or not"
+        );
+        if let Ok(mesh) = mesh {
+            compare(&name, &mesh, &references(path));
+            compared += 1;
+        }
     }
+    // `obj_files` has said so when the shapes are missing; where they exist, most must have been compared.
+    assert!(
+        files.is_empty() || compared >= 40,
+        "only {compared} shapes were compared"
+    );
 }

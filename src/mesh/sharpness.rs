@@ -2,6 +2,8 @@
 //!
 //! Sharpness is f32 as in OBJ tags and in OpenSubdiv, so that "has decayed to zero" means the same in both.
 
+use smallvec::SmallVec;
+
 use crate::mesh::{CreaseMethod, INFINITE_SHARPNESS};
 
 /// Whether a sharpness never decays.
@@ -33,7 +35,7 @@ pub fn decayed(sharpness: f32) -> f32 {
 /// Chaikin's rule takes three quarters of an edge's sharpness and one quarter of the mean of the other semi-sharp edges' before it decays.
 pub fn decayed_around_vertex(method: CreaseMethod, edges: &[f32]) -> Vec<f32> {
     let semi_sharp = edges.iter().filter(|&&s| is_semi_sharp(s)).count();
-    let sum: f32 = edges.iter().filter(|&&s| is_semi_sharp(s)).sum();
+    let sum = sum(edges.iter().copied().filter(|&s| is_semi_sharp(s)));
     let next = |&sharpness: &f32| {
         if method == CreaseMethod::Uniform || semi_sharp < 2 || !is_semi_sharp(sharpness) {
             return decayed(sharpness);
@@ -42,6 +44,13 @@ pub fn decayed_around_vertex(method: CreaseMethod, edges: &[f32]) -> Vec<f32> {
         decayed(0.75 * sharpness + 0.25 * others)
     };
     edges.iter().map(next).collect()
+}
+
+/// The sum in an order of its own: faces that list the edges of a vertex in different orders must find the same bits.
+pub fn sum(values: impl Iterator<Item = f32>) -> f32 {
+    let mut values: SmallVec<[f32; 8]> = values.collect();
+    values.sort_unstable_by(f32::total_cmp);
+    values.iter().sum()
 }
 
 /// Which mask refines a vertex.
@@ -65,5 +74,56 @@ pub fn rule(vertex: f32, sharp_edges: usize) -> Rule {
         1 => Rule::Dart,
         2 => Rule::Crease,
         _ => Rule::Corner,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sharpness_loses_one_a_level_unless_it_is_infinite() {
+        assert_eq!([3.5, 1.0, 0.25, 0.0].map(decayed), [2.5, 0.0, 0.0, 0.0]);
+        assert_eq!(decayed(INFINITE_SHARPNESS), INFINITE_SHARPNESS);
+        let levels = std::iter::successors(Some(9.9), |&s| is_sharp(s).then(|| decayed(s)));
+        assert_eq!(
+            levels.count(),
+            11,
+            "what is semi-sharp is gone after ten levels"
+        );
+    }
+
+    #[test]
+    fn chaikins_rule_takes_a_quarter_of_the_others() {
+        let around = |edges: &[f32]| decayed_around_vertex(CreaseMethod::Chaikin, edges).to_vec();
+        assert_eq!(around(&[4.0, 2.0]), [2.5, 1.5]);
+        assert_eq!(around(&[4.0, 2.0, 6.0, 0.0]), [3.0, 1.75, 4.25, 0.0]);
+        assert_eq!(
+            around(&[4.0, INFINITE_SHARPNESS]),
+            [3.0, INFINITE_SHARPNESS]
+        );
+        assert_eq!(around(&[4.0, 0.0]), [3.0, 0.0]);
+        let uniform = decayed_around_vertex(CreaseMethod::Uniform, &[4.0, 2.0]);
+        assert_eq!(uniform[..], [3.0, 1.0]);
+    }
+
+    #[test]
+    fn chaikins_rule_does_not_depend_on_the_order_of_edges() {
+        let edges = [5.3954, 2.1, 4.61873, 0.7, 3.33];
+        let expected = decayed_around_vertex(CreaseMethod::Chaikin, &edges);
+        for turn in 1..edges.len() {
+            let (mut turned, mut next) = (edges, expected.clone());
+            turned.rotate_left(turn);
+            next.rotate_left(turn);
+            assert_eq!(decayed_around_vertex(CreaseMethod::Chaikin, &turned), next);
+        }
+    }
+
+    #[test]
+    fn rules_follow_from_sharp_edges_unless_the_vertex_is_sharp() {
+        let rules = [0, 1, 2, 3, 4].map(|edges| rule(0.0, edges));
+        use Rule::{Corner, Crease, Dart, Smooth};
+        assert_eq!(rules, [Smooth, Dart, Crease, Corner, Corner]);
+        assert_eq!(rule(0.5, 0), Corner);
     }
 }

@@ -195,6 +195,9 @@ struct Builder {
     numbers: HashMap<(u32, ControlPoint), u32>,
 }
 
+/// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
+const SHALLOWEST: u32 = 2;
+
 /// Semi-sharp features are gone after ten levels; a cell inside a face is a B-spline then.
 const DEEPEST: u32 = 11;
 
@@ -235,7 +238,7 @@ impl Builder {
 
     /// The cell as a leaf, or None when it must be refined.
     fn leaf(&mut self, level: &Level, number: u32, cell: Cell, depth: u32) -> Option<Node> {
-        let last = depth >= self.options.max_level;
+        let last = depth >= self.options.max_level.max(SHALLOWEST);
         let patch = bspline_patch(&level.topology, number);
         match (patch, cell.corner) {
             (Some(patch), _) if patch.crease.is_none() => {

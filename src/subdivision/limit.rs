@@ -3,6 +3,10 @@
 //! Smooth vertices: Halstead, Kass, DeRose 1993, appendix A. Creases: Biermann, Levin, Zorin 2000, appendix A. An infinitely sharp
 //! crease that ends inside (a dart) changes the matrix of its end, and no closed form is known to us: the eigenvectors are iterated.
 
+mod corner;
+mod dart;
+mod page;
+
 use std::f64::consts::PI;
 
 use crate::mesh::sharpness::{Rule, is_semi_sharp, rule};
@@ -39,13 +43,35 @@ pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<Limi
         return None;
     }
     let ring = Ring { topology, fan };
-    Some(match rule(sharpness, sharp) {
+    let own = match rule(sharpness, sharp) {
         Rule::Smooth if ring.fan.edges.len() == 2 => ring.valence_two(),
         Rule::Smooth => ring.smooth(),
+        Rule::Crease if ring.is_page() => ring.page(),
         Rule::Crease => ring.crease(),
         Rule::Corner => ring.corner(),
         Rule::Dart => ring.dart(),
-    })
+    };
+    Some(own.turned(corner))
+}
+
+impl LimitStencil {
+    /// From the frame of a corner, whose u runs to the next vertex and v to the previous one, to that of the face.
+    fn turned(self, corner: u32) -> LimitStencil {
+        let LimitStencil { position, du, dv } = self;
+        let (du, dv) = match corner {
+            0 => (du, dv),
+            1 => (negated(dv), du),
+            2 => (negated(du), negated(dv)),
+            _ => (dv, negated(du)),
+        };
+        LimitStencil { position, du, dv }
+    }
+}
+
+fn negated(mask: Mask) -> Mask {
+    mask.into_iter()
+        .map(|(vertex, weight)| (vertex, -weight))
+        .collect()
 }
 
 /// How much more than its faces an edge weighs in a mode of frequency `angle` around a vertex.
@@ -137,13 +163,9 @@ impl Ring<'_> {
                 (self.far(second % 2), -0.25 * sign),
             ])
         };
-        let turned = across(-1.0)
-            .iter()
-            .map(|&(vertex, weight)| (vertex, -weight))
-            .collect();
         LimitStencil {
             du: across(1.0),
-            dv: turned,
+            dv: negated(across(-1.0)),
             ..self.smooth()
         }
     }
@@ -203,212 +225,5 @@ impl Ring<'_> {
             mask.push((self.far(i), (here + next) * scale));
         }
         mask
-    }
-
-    /// The vertex stays, and what is beside it contracts towards it mode by mode.
-    ///
-    /// A face that has both sharp edges to itself lies in their plane. Among several faces the slowest mode of the sector drags all
-    /// inner edges into one direction: the surface has a cusp. Its tangent plane, as the limit of the plane through the face's two edges,
-    /// is spanned by that direction and by what tells the two edges apart: a sharp edge itself or the next slower mode.
-    fn corner(&self) -> LimitStencil {
-        let position = Mask::from_slice(&[(self.middle(), 1.0)]);
-        let (k, at) = (self.faces(), self.fan.at);
-        let (du, dv) = if self.fan.closed {
-            self.cusp()
-        } else if k == 1 {
-            (self.along(0), self.along(1))
-        } else if at == 0 {
-            (self.along(0), self.sector_mode(1))
-        } else if at == k - 1 {
-            (self.sector_mode(1), self.along(k))
-        } else {
-            let next = self
-                .sector_mode(2)
-                .iter()
-                .map(|&(vertex, weight)| (vertex, -weight))
-                .collect();
-            (self.sector_mode(1), next)
-        };
-        LimitStencil { position, du, dv }
-    }
-
-    fn along(&self, i: usize) -> Mask {
-        Mask::from_slice(&[(self.middle(), -1.0), (self.end(i), 1.0)])
-    }
-
-    /// A sharp vertex without sharp edges: the mode of frequency 0 is the slowest, those of frequency 1 tell the face's edges apart.
-    fn cusp(&self) -> (Mask, Mask) {
-        let (n, at) = (self.faces(), self.fan.at);
-        if n == 2 {
-            let chord = Mask::from_slice(&[(self.end(at + 1), 1.0), (self.end(at), -1.0)]);
-            return (self.mode(0.0, |_| 1.0), chord);
-        }
-        let angle = 2.0 * PI / n as f64;
-        (
-            self.mode(0.0, |_| 1.0),
-            self.mode(angle, |i| -(angle * (i - at as f64 - 0.5)).sin())
-                .iter()
-                .map(|&(v, w)| (v, -w))
-                .collect(),
-        )
-    }
-
-    /// Mode j of a sector of k faces between sharp edges: sin(i j pi / k) inside, and whatever the sharp edges feed into it.
-    ///
-    /// Sharp edges contract by 1/2. A slower mode takes them in with weight 1 / (eigenvalue - 1/2); at 1/2 there is resonance and
-    /// they take over; faster modes vanish beside them.
-    fn sector_mode(&self, j: usize) -> Mask {
-        let k = self.faces();
-        let angle = PI * j as f64 / k as f64;
-        let excess = eigenvalue(angle) - 0.5;
-        let apart = self.fan.edges[0] != self.fan.edges[k];
-        let slower = excess > 1e-9;
-        let mut mask = Mask::new();
-        if slower || !apart && (j == 2 || k == 2) {
-            let scale = if slower { excess } else { 1.0 };
-            mask.extend(
-                self.mode(angle, |i| (angle * i).sin())
-                    .iter()
-                    .map(|&(v, w)| (v, w * scale)),
-            );
-        }
-        if slower || apart {
-            // What edge 1 and face 0 take from edge 0 in one step: 1/16 and 1/4.
-            let fed = (edge_weight(angle) / 16.0 + 0.25) * angle.sin();
-            let far_sign = if j % 2 == 1 { 1.0 } else { -1.0 };
-            for (i, sign) in [(0, 1.0), (k, far_sign)] {
-                mask.push((self.end(i), fed * sign));
-                mask.push((self.middle(), -fed * sign));
-            }
-        }
-        mask
-    }
-
-    /// The mask of a mode of frequency `angle` whose edge i has amplitude f(i), seen from a middle that stays.
-    fn mode(&self, angle: f64, f: impl Fn(f64) -> f64) -> Mask {
-        let mut mask = Mask::new();
-        for i in 0..self.faces() {
-            let (edge, face) = (
-                edge_weight(angle) * f(i as f64),
-                f(i as f64) + f(i as f64 + 1.0),
-            );
-            mask.extend([
-                (self.end(i), edge),
-                (self.far(i), face),
-                (self.middle(), -edge - face),
-            ]);
-        }
-        mask
-    }
-
-    /// One infinitely sharp edge ends here. The matrix is mirror-symmetric about that edge. The antisymmetric tangent is the sine of the
-    /// smooth vertex, on which the edge has no part; position and symmetric tangent are iterated.
-    fn dart(&self) -> LimitStencil {
-        let n = self.faces();
-        let matrix = DartMatrix { n };
-        let angle = |i: f64| 2.0 * PI * i / n as f64;
-        let position = matrix.iterate(|i| f64::from(u8::from(i == 0)), false);
-        let along = matrix.iterate(
-            |i| match i {
-                0 => 0.0,
-                i if i <= n => angle((i - 1) as f64).cos(),
-                i => angle((i - 1 - n) as f64 + 0.5).cos(),
-            },
-            true,
-        );
-        let sine = self.harmonic(|i| angle(i).sin());
-        let tangent = |at: f64| -> Mask {
-            let cosine = self
-                .mask(&along)
-                .into_iter()
-                .map(|(vertex, weight)| (vertex, weight * at.cos()));
-            cosine
-                .chain(
-                    sine.iter()
-                        .map(|&(vertex, weight)| (vertex, weight * at.sin())),
-                )
-                .collect()
-        };
-        LimitStencil {
-            position: self.mask(&position),
-            du: tangent(angle(self.fan.at as f64)),
-            dv: tangent(angle(self.fan.at as f64 + 1.0)),
-        }
-    }
-
-    /// Weights in the order middle, edges, faces.
-    fn mask(&self, weights: &[f64]) -> Mask {
-        let n = self.faces();
-        let vertex = |i: usize| match i {
-            0 => self.middle(),
-            i if i <= n => self.end(i - 1),
-            i => self.far(i - 1 - n),
-        };
-        weights
-            .iter()
-            .enumerate()
-            .map(|(i, &weight)| (vertex(i), weight))
-            .collect()
-    }
-}
-
-/// The subdivision matrix around a dart of valence n whose edge 0 is the sharp one; vertices in the order middle, edges, faces.
-struct DartMatrix {
-    n: usize,
-}
-
-impl DartMatrix {
-    /// Iterates `row * matrix` from `start` until it stands still. With `tangent`, the row is normalised on the way; a row that
-    /// sums to zero stays so, since the matrix reproduces constants, and ends in the largest eigenvalue below 1.
-    fn iterate(&self, start: impl Fn(usize) -> f64, tangent: bool) -> Vec<f64> {
-        let mut row: Vec<f64> = (0..=2 * self.n).map(start).collect();
-        // Neighbouring modes differ by about 1 / n^2, so that many steps settle the last digit; the bound is for poles of hundreds.
-        for _ in 0..(200 + 40 * self.n * self.n).min(50_000) {
-            let mut next = self.times(&row);
-            if tangent {
-                let sum: f64 = next.iter().sum::<f64>() / next.len() as f64;
-                let length = next.iter().map(|w| w * w).sum::<f64>().sqrt();
-                next.iter_mut().for_each(|w| *w = (*w - sum) / length);
-            }
-            let change = row
-                .iter()
-                .zip(&next)
-                .map(|(a, b)| (a - b).abs())
-                .fold(0.0, f64::max);
-            row = next;
-            if change < 1e-17 {
-                break;
-            }
-        }
-        row
-    }
-
-    fn times(&self, row: &[f64]) -> Vec<f64> {
-        let n = self.n;
-        let (edge, face) = (|i: usize| 1 + i % n, |i: usize| 1 + n + i % n);
-        let mut product = vec![0.0; 2 * n + 1];
-        let add_face = |i: usize, weight: f64, product: &mut Vec<f64>| {
-            for vertex in [0, edge(i), edge(i + 1), face(i)] {
-                product[vertex] += 0.25 * weight;
-            }
-        };
-        let square = (n * n) as f64;
-        product[0] += row[0] * (n as f64 - 2.0) / n as f64;
-        for i in 0..n {
-            product[edge(i)] += row[0] / square;
-            add_face(i, row[0] / square, &mut product);
-            let weight = row[edge(i)];
-            if i == 0 {
-                product[0] += 0.5 * weight;
-                product[edge(0)] += 0.5 * weight;
-            } else {
-                product[0] += 0.25 * weight;
-                product[edge(i)] += 0.25 * weight;
-                add_face(i - 1, 0.25 * weight, &mut product);
-                add_face(i, 0.25 * weight, &mut product);
-            }
-            add_face(i, row[face(i)], &mut product);
-        }
-        product
     }
 }

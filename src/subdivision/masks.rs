@@ -5,7 +5,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::mesh::TriangleSubdivision;
-use crate::mesh::sharpness::{Rule, is_sharp, rule};
+use crate::mesh::sharpness::{Rule, is_sharp, rule, sum};
 use crate::mesh::topology::Topology;
 
 /// A point as a weighted sum of vertices. A vertex may occur more than once.
@@ -147,14 +147,11 @@ fn fading_share(topology: &Topology, vertex: u32, sharp: &[u32]) -> f64 {
     let fading = edges
         .filter(|edge| !is_sharp(edge.next_at(vertex)))
         .map(|edge| edge.sharpness);
-    let (count, sum) = own
-        .into_iter()
-        .chain(fading)
-        .fold((0, 0.0f32), |(count, sum), s| (count + 1, sum + s));
-    if count == 0 {
+    let fading: SmallVec<[f32; 4]> = own.into_iter().chain(fading).collect();
+    if fading.is_empty() {
         0.0
     } else {
-        f64::from((sum / count as f32).min(1.0))
+        f64::from((sum(fading.iter().copied()) / fading.len() as f32).min(1.0))
     }
 }
 

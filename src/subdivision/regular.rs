@@ -128,9 +128,11 @@ fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPo
         (Rule::Smooth, 4) if fan.closed => Some(interior(&end, &far, fan.at, None)),
         (Rule::Crease, 4) if fan.closed => {
             let crease = straight_crease(topology, own, &fan.edges, &sharp)?;
-            let follows_next = (fan.at + 4 - crease.0) % 2 == 0;
+            let follows_next = (fan.at + 4 - crease.0).is_multiple_of(2);
             Some(interior(&end, &far, fan.at, Some((follows_next, crease.1))))
         }
+        // A page at a non-manifold vertex; see `limit`.
+        (Rule::Crease, 2) if fan.closed || fan.edges.first() == fan.edges.last() => None,
         (Rule::Crease, 2) if !semi_sharp && fan.at == 0 => Some(CornerPoints {
             along: ControlPoint::Vertex(end(2)),
             beside: ControlPoint::Mirrored([own, previous]),

@@ -111,3 +111,75 @@ pub fn required_level(levels: &Levels, max_level: u32) -> u32 {
         .find(|&level| (1u32 << level) as f32 >= levels.greatest())
         .unwrap_or(max_level)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
+
+    fn patch(flags: u32) -> abi::Patch {
+        abi::Patch {
+            flags,
+            ..Default::default()
+        }
+    }
+
+    /// Whole levels 1..=64 and some between.
+    fn all_levels() -> impl Iterator<Item = f32> {
+        (4..=256).map(|quarters| quarters as f32 / 4.0)
+    }
+
+    #[test]
+    fn edges_have_the_same_segments_on_both_sides() {
+        for (level, spacing, max_level) in all_levels()
+            .flat_map(|l| SPACINGS.map(|s| (l, s)))
+            .flat_map(|(l, s)| [1, 2, 4, 6].map(|m| (l, s, m)))
+        {
+            let quad = levels(&patch(abi::PATCH_EVEN_EDGE << 2), level, spacing, max_level);
+            let half = levels(&patch(abi::PATCH_HALF), level, spacing, max_level);
+            let place = format!("{level}, {spacing:?}, {max_level}");
+            // Quads agree by the same number, n-gons' inner edges too.
+            assert_eq!(quad.edges[0], quad.inside, "{place}");
+            assert_eq!(half.edges, [half.inside; 4], "{place}");
+            // An edge before an n-gon has its segments from two parts.
+            assert_eq!(
+                spacing.segments(quad.edges[2]),
+                2 * spacing.segments(half.edges[0]),
+                "{place}"
+            );
+        }
+    }
+
+    /// Both ways to make the segments put their vertices at the same places: equal steps, since each level is a whole even number.
+    #[test]
+    fn edges_beside_n_gons_have_equal_steps() {
+        for (level, spacing) in all_levels().flat_map(|l| SPACINGS.map(|s| (l, s))) {
+            let quad = levels(&patch(abi::PATCH_EVEN_EDGE), level, spacing, 6);
+            let half = levels(&patch(abi::PATCH_HALF), level, spacing, 6);
+            for level in [quad.edges[0], half.edges[0]] {
+                assert_eq!(
+                    level,
+                    spacing.segments(level) as f32,
+                    "{level}, {spacing:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn levels_stay_within_what_the_plan_is_made_for() {
+        for (level, max_level) in all_levels().flat_map(|l| (1..=6).map(move |m| (l, m))) {
+            let quad = levels(
+                &patch(abi::PATCH_EVEN_EDGE),
+                level,
+                Spacing::Equal,
+                max_level,
+            );
+            assert!(quad.greatest() <= (1u32 << max_level) as f32);
+            let needed = required_level(&quad, max_level);
+            assert!(quad.greatest() <= (1u32 << needed) as f32);
+            assert!(needed == 0 || quad.greatest() > (1u32 << (needed - 1)) as f32);
+        }
+    }
+}

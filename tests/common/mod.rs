@@ -1,6 +1,9 @@
 //! What several tests share: the models and shapes beside the project, where they are.
 #![allow(dead_code)]
 
+pub mod meshes;
+pub mod surfaces;
+
 use std::path::PathBuf;
 
 use hullform::mesh::{ControlMesh, read_obj};

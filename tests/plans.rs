@@ -1,0 +1,369 @@
+//! What holds of every plan: weights, trees, counts, and who shares one.
+
+mod common;
+
+use common::meshes::{cases, manifold, scatter, wild};
+use common::surfaces::Surfaces;
+use glam::{DVec3, Vec2};
+use hullform::abi;
+use hullform::mesh::topology::Topology;
+use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
+use hullform::method::{METHODS, method};
+use hullform::plan::{Catalogue, Leaf, Node, PackedPlans, Plan, PlanOptions, Plans, Ring, walk};
+use hullform::subdivision::{Blend, LimitSurface};
+use hullform::tessellation::{Levels, required_level};
+use proptest::prelude::*;
+
+/// The ring of every quad and of every n-gon's corner of a mesh, with its ptex number.
+fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
+    let mut rings = Vec::new();
+    for face in 0..topology.face_count() as u32 {
+        let arity = topology.face(face).len() as u32;
+        let first = rings.len();
+        if arity == 4 {
+            rings.push((first, Ring::of_quad(topology, face)));
+        } else {
+            rings.extend(
+                (0..arity).map(|i| (first + i as usize, Ring::from_corner(topology, face, i))),
+            );
+        }
+    }
+    rings
+}
+
+/// The different plans of a mesh.
+fn plans(mesh: &ControlMesh, options: PlanOptions) -> Vec<Plan> {
+    let mut catalogue = Catalogue::default();
+    for (_, ring) in rings(&Topology::new(mesh)) {
+        catalogue.number(ring.configuration);
+    }
+    catalogue.build(options)
+}
+
+fn packed(plans: &[Plan]) -> PackedPlans {
+    let mut packed = PackedPlans::default();
+    plans.iter().for_each(|plan| packed.push(plan));
+    packed
+}
+
+/// Positions are weighted means, tangents weighted differences; the corners' come first.
+fn hold_sums(plan: &Plan) {
+    for (number, stencil) in plan.stencils.iter().enumerate() {
+        let tangent = number < Plan::CORNER_STENCILS && number % 3 != 0;
+        let sum: f64 = stencil.weights.iter().sum();
+        let size: f64 = stencil.weights.iter().map(|w| w.abs()).sum();
+        let expected = if tangent { 0.0 } else { 1.0 };
+        assert!(
+            (sum - expected).abs() < 1e-12 * size.max(1.0),
+            "{number}: {sum}"
+        );
+        assert_eq!(stencil.weights.len(), plan.ring_size);
+    }
+    let levels: Vec<u32> = plan.stencils.iter().map(|stencil| stencil.level).collect();
+    assert!(levels.is_sorted() && levels.iter().all(|&level| level <= plan.max_level));
+}
+
+/// Children lie behind their parents, and points are stencils there are: so every walk ends, and reads what it may.
+fn hold_tree(plan: &Plan) {
+    let stencils = plan.stencils.len() as u32;
+    for (number, node) in plan.nodes.iter().enumerate() {
+        match node {
+            Node::Internal { children } => {
+                assert!(*children as usize > number);
+                assert!(*children as usize + 4 <= plan.nodes.len());
+            }
+            Node::Regular { points, .. } => assert!(points.iter().all(|&p| p < stencils)),
+            Node::Crease {
+                points,
+                edge,
+                sharpness,
+            } => {
+                assert!(points.iter().all(|&p| p < stencils));
+                assert!(*edge < 4 && *sharpness > 0.0);
+            }
+            Node::Terminal { corner, levels } => {
+                assert!(*corner < 4 && !levels.is_empty());
+                assert!(levels.iter().flatten().all(|&p| p < stencils));
+            }
+            Node::Extraordinary { corner } => assert!(*corner < 4),
+        }
+    }
+}
+
+/// The points that the evaluation at (u, v) reads; None where it stops at an extraordinary vertex although (u, v) is no corner.
+fn points_read(plans: Plans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
+    match walk(plans, plan, uv) {
+        Leaf::Corner(corner) => {
+            let at_corner = uv.to_array().iter().all(|&x| x == 0.0 || x == 1.0);
+            at_corner.then(|| (3 * corner..3 * corner + 3).collect())
+        }
+        Leaf::Bspline { points, stride, .. } => Some(
+            (0..16)
+                .map(|i| plans.point(points + i % 4 + stride * (i / 4)))
+                .collect(),
+        ),
+    }
+}
+
+/// Every point that a coordinate reads is among those that its tess level has.
+fn hold_counts(packed: &PackedPlans, plan: u32, level: f32, coordinates: &[[f32; 2]]) {
+    let header = packed.headers[plan as usize];
+    let levels = Levels {
+        edges: [1.0; 4],
+        inside: level,
+    };
+    let count = header.counts[required_level(&levels, header.max_level) as usize];
+    for &uv in coordinates {
+        let read = points_read(packed.view(), plan, Vec2::from(uv));
+        let read = read.unwrap_or_else(|| panic!("plan {plan}: no patch at {uv:?}"));
+        let last = read.iter().max().expect("an evaluation reads points");
+        assert!(
+            *last < count,
+            "plan {plan}, tess level {level}, {uv:?}: point {last} of {count}"
+        );
+    }
+}
+
+/// Coordinates of an equal spacing, as quotients and as what is left of 1.
+fn steps(level: u32) -> Vec<f32> {
+    let quotients = (0..=level).map(|i| i as f32 / level as f32);
+    let rests = (0..=level).map(|i| 1.0 - i as f32 / level as f32);
+    quotients.chain(rests).collect()
+}
+
+/// All coordinates of one level, inside and on the edges. An edge may have a lower level than the inside: since counts grow with levels, it is
+/// enough that each level finds its own.
+fn lattice(level: u32) -> Vec<[f32; 2]> {
+    let steps = steps(level);
+    let grid = steps
+        .iter()
+        .flat_map(|&u| steps.iter().map(move |&v| [u, v]));
+    grid.collect()
+}
+
+/// Coordinates on no lattice that keep 1 / ceil(level) from the edges or lie on them, as fractional spacing may make them.
+fn fractional(level: f32, seed: u64) -> Vec<[f32; 2]> {
+    let margin = 1.0 / level.ceil();
+    let at = |x: f64| {
+        (margin + (1.0 - 2.0 * margin) * (0.5 * x as f32 + 0.5)).clamp(margin, 1.0 - margin)
+    };
+    let points = (0..40).map(|i| scatter(40 * seed + i));
+    points
+        .flat_map(|p| {
+            let [u, v] = [at(p.x), at(p.y)];
+            [
+                [u, v],
+                [u, 0.0],
+                [1.0, v],
+                [u, 1.0],
+                [0.0, v],
+                [margin, v],
+                [u, 1.0 - margin],
+            ]
+        })
+        .collect()
+}
+
+/// Holds the counts of every plan at the given levels.
+fn hold_levels(packed: &PackedPlans, levels: &[u32], seed: u64) {
+    let deepest = packed.headers.first().map_or(0, |header| header.max_level);
+    for plan in 0..packed.headers.len() as u32 {
+        assert!(packed.headers[plan as usize].counts.is_sorted());
+        for &level in levels.iter().filter(|&&level| level <= 1 << deepest) {
+            hold_counts(packed, plan, level as f32, &lattice(level));
+            let between = level as f32 - 0.5 * (1.0 + scatter(seed + u64::from(level)).x as f32);
+            if between > 1.0 {
+                hold_counts(packed, plan, between, &fractional(between, seed));
+            }
+        }
+    }
+}
+
+fn hold(mesh: &ControlMesh, options: PlanOptions, levels: &[u32]) {
+    let plans = plans(mesh, options);
+    for plan in &plans {
+        hold_sums(plan);
+        hold_tree(plan);
+        assert_eq!(plan.max_level, options.max_level);
+    }
+    hold_levels(&packed(&plans), levels, plans.len() as u64);
+}
+
+proptest! {
+    #![proptest_config(cases(16))]
+
+    #[test]
+    fn plans_of_random_meshes_are_sound_and_need_no_more_points_than_they_count(
+        recipe in wild(), max_level in 1u32..=6, direct_creases in any::<bool>(), level in 3u32..64,
+    ) {
+        let options = PlanOptions { max_level, direct_creases };
+        hold(&recipe.mesh(), options, &[1, 2, 3, 4, 8, 9, level]);
+    }
+
+    /// The topology that a configuration tells has the limits of the mesh it was taken from.
+    #[test]
+    fn configurations_tell_all_that_shapes_a_face(recipe in wild()) {
+        let mesh = recipe.mesh();
+        let truth = LimitSurface::new(&mesh);
+        for (ptex, ring) in rings(truth.topology()) {
+            let Some(center) = truth.evaluate(ptex, 0.5, 0.5) else { continue };
+            let plan = Plan::build(&ring.configuration, PlanOptions::default());
+            let positions: Vec<DVec3> = ring.vertices.iter().map(|&v| mesh.positions()[v as usize]).collect();
+            prop_assert_eq!(plan.ring_size, positions.len());
+            let limit = |number: usize| {
+                let weights = plan.stencils[number].weights.iter().enumerate();
+                DVec3::blend(&weights.map(|(i, &w)| (i as u32, w)).collect::<Vec<_>>(), &positions)
+            };
+            let (face, _) = truth.face_corner(ptex);
+            let turn = if mesh.face(face as usize).len() == 4 { ring.start as usize } else { 0 };
+            for corner in 0..4 {
+                let (u, v) = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][(corner + turn) % 4];
+                let expected = truth.evaluate(ptex, u, v).expect("no hole").position;
+                prop_assert!(limit(3 * corner).distance(expected) < 1e-12 * (1.0 + center.position.length()));
+            }
+            let again = Ring::from_corner(&ring.configuration.topology(), 0, 0).configuration;
+prop_assert_eq!(&again, &ring.configuration);
+        }
+    }
+
+    /// One patch a quad and one a corner of an n-gon; none a hole.
+    #[test]
+    fn every_method_makes_one_patch_of_each_ptex_face_that_is_no_hole(recipe in manifold()) {
+        let model = Model::new(recipe.mesh());
+        let truth = LimitSurface::new(model.mesh());
+        let expected = (0..truth.ptex_count() as u32).filter(|&ptex| !model.topology().is_hole(truth.face_corner(ptex as usize).0));
+        let expected: Vec<u32> = expected.collect();
+        for method in METHODS {
+            let prepared = (method.prepare)(&model, PlanOptions::default()).expect("sound options");
+            let patches = prepared.passes.iter().flat_map(|pass| &pass.patches);
+            let mut found: Vec<u32> = patches.map(|patch| patch.ptex).collect();
+            found.sort_unstable();
+            prop_assert_eq!(&found, &expected, "{}", method.name);
+        }
+    }
+}
+
+#[test]
+fn every_tess_level_finds_its_points_among_those_it_counts() {
+    let all: Vec<u32> = (1..=64).collect();
+    for (name, stride) in [
+        ("hull", 3),
+        ("ngons", 1),
+        ("creased-torus", 1),
+        ("sheet", 1),
+    ] {
+        let mesh = builtin(name).expect("a built-in shape");
+        let plans = plans(&mesh, PlanOptions::default());
+        let chosen: Vec<Plan> = plans.into_iter().step_by(stride).take(8).collect();
+        hold_levels(&packed(&chosen), &all, 1);
+    }
+}
+
+#[test]
+fn plans_of_every_shared_shape_are_sound() {
+    for path in common::obj_files("shapes") {
+        if let (true, Ok(mesh)) = (common::stem(&path).starts_with("catmark"), read_obj(&path)) {
+            hold(&mesh, PlanOptions::default(), &[1, 2, 3, 7, 33]);
+        }
+    }
+}
+
+/// (model, regular, irregular, most plans).
+#[test]
+fn shared_models_have_the_papers_numbers_of_patches() {
+    for (name, regular, irregular, plans) in [
+        ("bigguy", 858, 592, 19),
+        ("armorguy", 962, 8409, usize::MAX),
+    ] {
+        let Some(mesh) = common::model(name) else {
+            continue;
+        };
+        let surfaces = Surfaces::of(mesh, PlanOptions::default());
+        let found = surfaces.prepared.plans.expect("the method has plans");
+        assert_eq!(
+            (found.regular, found.irregular),
+            (regular, irregular),
+            "{name}"
+        );
+        assert!(found.plans <= plans, "{name} has {} plans", found.plans);
+    }
+}
+
+#[test]
+fn shared_models_have_sound_plans() {
+    for name in ["bigguy", "monsterfrog", "car"] {
+        if let Some(mesh) = common::model(name) {
+            let all = plans(&mesh, PlanOptions::default());
+            assert!(!all.is_empty());
+            for plan in &all {
+                hold_sums(plan);
+                hold_tree(plan);
+            }
+            let some: Vec<Plan> = all.into_iter().step_by(11).collect();
+            hold_levels(&packed(&some), &[1, 2, 3, 4, 5, 8, 9, 17, 64], 7);
+        }
+    }
+}
+
+/// A plane of quads whose middle face, with one creased edge, begins at corner `turn`.
+fn creased_sheet(turn: usize) -> ControlMesh {
+    let positions: Vec<[f64; 3]> = (0..36)
+        .map(|i| [f64::from(i % 6), f64::from(i / 6), scatter(i as u64).z])
+        .collect();
+    let mut faces = Vec::new();
+    for (y, x) in (0..5u32).flat_map(|y| (0..5).map(move |x| (y, x))) {
+        let mut face = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| x + i + 6 * (y + j));
+        if (x, y) == (2, 2) {
+            face.rotate_left(turn);
+        }
+        faces.extend(face);
+    }
+    let line = [12, 13, 14, 15, 16, 17];
+    let builder = ControlMesh::builder(&positions, &[4; 25], &faces);
+    let builder = line
+        .windows(2)
+        .fold(builder, |b, edge| b.crease(edge[0], edge[1], 2.3));
+    builder.build().expect("sound")
+}
+
+#[test]
+fn a_creased_face_has_the_same_plan_however_it_is_turned() {
+    let configuration = |turn| {
+        let topology = Topology::new(&creased_sheet(turn));
+        Ring::of_quad(&topology, 12).configuration
+    };
+    for turn in 1..4 {
+        assert_eq!(configuration(turn), configuration(0));
+    }
+    let method = method("quadtree").expect("it is in the table");
+    let [plain, turned] = [0, 1].map(|turn| {
+        let model = Model::new(creased_sheet(turn));
+        let prepared = (method.prepare)(&model, PlanOptions::default()).expect("sound");
+        prepared.plans.expect("the method has plans").plans
+    });
+    assert_eq!(plain, turned);
+}
+
+#[test]
+fn patches_of_n_gons_are_marked_as_halves_and_their_neighbours_edges_as_even() {
+    let model = Model::new(builtin("ngons").expect("a built-in shape"));
+    for method in METHODS {
+        let prepared = (method.prepare)(&model, PlanOptions::default()).expect("sound options");
+        let offsets = model.mesh().ptex_offsets();
+        for patch in prepared.passes.iter().flat_map(|pass| &pass.patches) {
+            let face = offsets.partition_point(|&first| first <= patch.ptex) as u32 - 1;
+            let quad = model.topology().face(face).len() == 4;
+            assert_eq!(patch.flags & abi::PATCH_HALF == 0, quad);
+            let turn = patch.flags >> abi::PATCH_TURN_SHIFT & 3;
+            for edge in (0..4).filter(|_| quad) {
+                let number = model.topology().face_edges(face)[(edge + turn as usize) % 4];
+                let neighbours = model.topology().edge_faces(number).iter();
+                let n_gon = neighbours
+                    .clone()
+                    .any(|&f| model.topology().face(f).len() != 4);
+                let even = patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
+                assert_eq!(even, n_gon, "{} patch {patch:?}", method.name);
+            }
+        }
+    }
+}

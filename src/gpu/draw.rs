@@ -204,7 +204,8 @@ impl TessellatedSurface {
             view_projection: view.clip_from_model,
             eye: view.eye,
             shading: view.shading,
-            level: cut.level,
+            // Not below what the tessellator would raise it to: control shaders compute the points that this level needs.
+            level: cut.level.max(cut.spacing.least()),
             flags: flag(
                 cut.spacing == Spacing::FractionalEven,
                 abi::FRAME_FRACTIONAL_EVEN,

@@ -270,7 +270,11 @@ fn irregular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Su
     match walk(plans, plan, uv) {
         Leaf::Corner(corner) => {
             let [position, du, dv] = [0, 1, 2].map(|i| stencil(3 * corner + i));
-            Surface { position, du, dv }
+            Surface {
+                position: position + origin,
+                du,
+                dv,
+            }
         }
         Leaf::Bspline {
             points,

@@ -16,8 +16,16 @@ impl Spacing {
     /// The number of segments that the tessellator makes of an edge of this level (Vulkan spec, "Tessellator Spacing").
     pub fn segments(self, level: f32) -> u32 {
         match self {
-            Spacing::Equal => level.clamp(1.0, 64.0).ceil() as u32,
-            Spacing::FractionalEven => 2 * (level.clamp(2.0, 64.0) / 2.0).ceil() as u32,
+            Spacing::Equal => level.clamp(self.least(), 64.0).ceil() as u32,
+            Spacing::FractionalEven => 2 * (level.clamp(self.least(), 64.0) / 2.0).ceil() as u32,
+        }
+    }
+
+    /// The least level: the tessellator raises lower ones to it.
+    pub fn least(self) -> f32 {
+        match self {
+            Spacing::Equal => 1.0,
+            Spacing::FractionalEven => 2.0,
         }
     }
 
@@ -39,12 +47,12 @@ pub struct Levels {
     pub inside: f32,
 }
 
-/// The levels of a patch when quads have `level`, 1..=2^`max_level` and at most 64.
+/// The levels of a patch when quads have `level`, from the spacing's least to 2^`max_level` and at most 64.
 ///
 /// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
 /// fractional-even (Brainerd et al. 2016, section 7.2).
 pub fn levels(patch: &abi::Patch, level: f32, spacing: Spacing, max_level: u32) -> Levels {
-    let level = level.clamp(1.0, (1u32 << max_level).min(64) as f32);
+    let level = level.clamp(spacing.least(), (1u32 << max_level).min(64) as f32);
     let half = match spacing {
         Spacing::Equal => (level * 0.5).ceil(),
         Spacing::FractionalEven => 2.0 * (level * 0.25).ceil(),

@@ -3,6 +3,9 @@
 
 pub mod meshes;
 pub mod surfaces;
+#[cfg(feature = "host")]
+pub mod gpu;
+pub mod spirv;
 
 use std::path::PathBuf;
 

@@ -1,0 +1,402 @@
+//! A model on whatever Vulkan device there is, drawn and captured through the library's public interface.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use ash::vk;
+use hullform::abi::{self, Captured};
+use hullform::gpu::{
+    Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target, TessellatedSurface,
+    View, Workaround, ring,
+};
+use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
+use hullform::mesh::Model;
+use hullform::method::{Prepared, method};
+use hullform::plan::PlanOptions;
+use hullform::tessellation::Spacing;
+use hullform::{Error, Result};
+
+/// The side of the picture that everything is drawn into.
+pub const SIDE: u32 = 64;
+
+/// What pipelines depend on here: the shaders of the passes, spacing, and what becomes of the triangles.
+type PipelineKey = (Vec<&'static str>, Spacing, &'static str);
+
+/// A validated device with all that surfaces share. [`Gpu::finish`] ends it.
+pub struct Gpu {
+    instance: Instance,
+    pub device: Device,
+    layout: Option<Layout>,
+    target: Option<OffscreenTarget>,
+    pipelines: RefCell<HashMap<PipelineKey, Pipelines>>,
+}
+
+impl Gpu {
+    /// The device, or `None` (with a line that says so) where there is no Vulkan, or no validation layer, to test with.
+    pub fn open() -> Option<Gpu> {
+        let opened =
+            Instance::new(true).and_then(|instance| Ok((Device::open(&instance, None)?, instance)));
+        let (device, instance) = match opened {
+            Ok(opened) => opened,
+            Err(error @ (Error::NoDevice(_) | Error::Option { .. })) => {
+                println!("skipped: {error}");
+                return None;
+            }
+            Err(error) => panic!("{error}"),
+        };
+        // SAFETY: the device is live.
+        let layout = unsafe { Layout::new(device.raw()) }.expect("every device has such layouts");
+        let target = OffscreenTarget::with_encoding(&device, SIDE, SIDE, 1, Encoding::Unorm);
+        Some(Gpu {
+            instance,
+            target: Some(target.expect("a small picture fits every device")),
+            device,
+            layout: Some(layout),
+            pipelines: RefCell::default(),
+        })
+    }
+
+    /// Brings a prepared model to the device.
+    pub fn load(
+        &self,
+        model: &Model,
+        prepared: Prepared,
+        workarounds: &[&'static Workaround],
+        options: SurfaceOptions,
+    ) -> Result<Loaded<'_>> {
+        let device = self.device.raw();
+        let allocator = &mut self.device.allocator();
+        let layout = self.layout();
+        // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
+        let surface = unsafe {
+            TessellatedSurface::new(
+                device,
+                allocator,
+                layout,
+                model,
+                prepared,
+                workarounds,
+                options,
+            )
+        };
+        let mut loaded = Loaded {
+            gpu: self,
+            options,
+            reach: reach(model),
+            surface: Some(surface?),
+        };
+        self.device.submit(|cmd| {
+            // SAFETY: recording on the device that made the surface, outside of a render pass.
+            unsafe { loaded.surface().cmd_upload(device, cmd) };
+            Ok(())
+        })?;
+        let surface = loaded.surface.as_mut().expect("it was just made");
+        // SAFETY: the upload has been waited for.
+        unsafe { surface.finish_upload(device, allocator) };
+        Ok(loaded)
+    }
+
+    /// Closes the device and expects that the validation layer never had anything to say.
+    pub fn finish(mut self) {
+        for (_, pipelines) in self.pipelines.take() {
+            // SAFETY: every submission has been waited for.
+            unsafe { pipelines.destroy(self.device.raw()) };
+        }
+        if let Some(layout) = self.layout.take() {
+            // SAFETY: as above.
+            unsafe { layout.destroy(self.device.raw()) };
+        }
+        let instance = self.instance.clone();
+        drop(self);
+        let messages = instance.validation_messages();
+        assert!(messages.is_empty(), "{}", messages.join("\n"));
+    }
+
+    fn layout(&self) -> &Layout {
+        self.layout.as_ref().expect("there until it is finished")
+    }
+
+    fn target(&self) -> &OffscreenTarget {
+        self.target.as_ref().expect("there until it is finished")
+    }
+
+    /// Lets `use_them` use the pipelines for a prepared model, which are built once.
+    fn with_pipelines<T>(
+        &self,
+        prepared: &Prepared,
+        spacing: Spacing,
+        fill: Fill,
+        use_them: impl FnOnce(&Pipelines) -> T,
+    ) -> T {
+        let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
+        let fill_name = match fill {
+            Fill::Solid => "solid",
+            Fill::Lines => "lines",
+            Fill::Discard => "discard",
+        };
+        let mut all = self.pipelines.borrow_mut();
+        let pipelines = all.entry((shaders, spacing, fill_name)).or_insert_with(|| {
+            let target = Target {
+                render_pass: self.target().render_pass(),
+                samples: self.target().samples(),
+            };
+            let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
+            // SAFETY: all of one live device.
+            let built = unsafe {
+                Pipelines::new(
+                    device,
+                    self.layout(),
+                    cache,
+                    prepared,
+                    target,
+                    spacing,
+                    fill,
+                )
+            };
+            built.expect("the shipped modules make pipelines")
+        });
+        use_them(pipelines)
+    }
+}
+
+/// Half of what a picture must show, so that no triangle is clipped: limits and linear faces stay within the control points' hull.
+fn reach(model: &Model) -> f32 {
+    let positions = model.positions();
+    let farthest = positions
+        .iter()
+        .map(|position| position.abs().max_element());
+    farthest.fold(1e-30, f32::max)
+}
+
+/// A model on the device.
+pub struct Loaded<'a> {
+    gpu: &'a Gpu,
+    options: SurfaceOptions,
+    reach: f32,
+    surface: Option<TessellatedSurface>,
+}
+
+/// What a submission, or one a pass, gave.
+#[derive(Default)]
+pub struct Frame {
+    /// Captured vertices, a list a pass; each by patch, v and u, once.
+    pub passes: Vec<Vec<Captured>>,
+    /// What the control shaders counted.
+    pub counters: Counters,
+    /// Control shader patches, evaluation shader invocations, clipping primitives; where the device counts them.
+    pub statistics: Option<[u64; 3]>,
+}
+
+impl Loaded<'_> {
+    pub fn surface(&self) -> &TessellatedSurface {
+        self.surface.as_ref().expect("there from load to drop")
+    }
+
+    pub fn prepared(&self) -> &Prepared {
+        self.surface().prepared()
+    }
+
+    /// Lets the host give slots, as [`draw`](Self::draw) needs them when they are the host's.
+    pub fn write_slots(&mut self, cut: Cut, batches: &[Batch]) {
+        let surface = self.surface.as_mut().expect("there from load to drop");
+        surface.write_slots(cut, batches);
+    }
+
+    /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
+    pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
+        let batches = self.surface().batches(cut)?;
+        self.write_slots(cut, &batches);
+        let mut all = Frame::default();
+        all.passes = vec![Vec::new(); self.prepared().passes.len()];
+        for batches in self.submissions(&batches) {
+            let mut frame = self.draw(cut, fill, batches)?;
+            all.passes[batches[0].pass].append(&mut frame.passes[0]);
+            all.counters.overflows += frame.counters.overflows;
+            all.counters.points += frame.counters.points;
+            all.statistics = match (all.statistics, frame.statistics) {
+                (Some(a), Some(b)) => Some(std::array::from_fn(|i| a[i] + b[i])),
+                (a, b) => a.or(b),
+            };
+        }
+        Ok(all)
+    }
+
+    /// Batches of one pass in a row, not too many for the capture.
+    fn submissions<'b>(&self, batches: &'b [Batch]) -> Vec<&'b [Batch]> {
+        let room = self.options.capture_vertices / 2;
+        let mut submissions = Vec::new();
+        let (mut start, mut vertices) = (0, 0);
+        for (number, batch) in batches.iter().enumerate() {
+            let other = batch.pass != batches[start].pass;
+            if number > start && (other || vertices + batch.vertices > room) {
+                submissions.push(&batches[start..number]);
+                (start, vertices) = (number, 0);
+            }
+            vertices += batch.vertices;
+        }
+        submissions.push(&batches[start..]);
+        submissions
+    }
+
+    /// Draws batches in one submission. All that is captured counts as one pass's.
+    ///
+    /// Between two that do not know of each other (each is the first to use the ring, or they share a counter) there is a barrier.
+    pub fn draw(&self, cut: Cut, fill: Fill, batches: &[Batch]) -> Result<Frame> {
+        let gpu = self.gpu;
+        let device = gpu.device.raw();
+        let counts = gpu.device.info().support.optional.pipeline_statistics_query;
+        let query = counts
+            .then(|| StatisticsQuery::new(&gpu.device))
+            .transpose()?;
+        gpu.with_pipelines(self.prepared(), cut.spacing, fill, |pipelines| {
+            // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+            gpu.device.submit(|cmd| unsafe {
+                self.surface().cmd_prepare(device, cmd);
+                if let Some(query) = &query {
+                    query.cmd_reset(cmd);
+                }
+                gpu.target().begin(cmd, [0.0; 4]);
+                if let Some(query) = &query {
+                    query.cmd_begin(cmd);
+                }
+                self.cmd_draws(cmd, pipelines, cut, batches);
+                if let Some(query) = &query {
+                    query.cmd_end(cmd);
+                }
+                gpu.target().end(cmd);
+                self.surface().cmd_read_back(device, cmd);
+                gpu.target().cmd_copy_to_host(cmd);
+                Ok(())
+            })
+        })?;
+        Ok(Frame {
+            passes: vec![self.captured()],
+            counters: self.surface().counters(),
+            statistics: query.map(|query| query.read()).transpose()?,
+        })
+    }
+
+    /// # Safety
+    /// As `TessellatedSurface::cmd_draw`.
+    unsafe fn cmd_draws(
+        &self,
+        cmd: vk::CommandBuffer,
+        pipelines: &Pipelines,
+        cut: Cut,
+        batches: &[Batch],
+    ) {
+        let device = self.gpu.device.raw();
+        for (number, batch) in batches.iter().enumerate() {
+            // SAFETY: this function's contract; the target's pass allows the barrier.
+            unsafe {
+                if number > 0 && batch.ring_batch == 0 {
+                    ring::cmd_ring_barrier(device, cmd);
+                }
+                let layout = self.gpu.layout();
+                self.surface()
+                    .cmd_draw(device, cmd, layout, pipelines, &self.view(), cut, batch);
+            }
+        }
+    }
+
+    /// From the side, everything within the picture and its depth.
+    fn view(&self) -> View {
+        let scale = 0.99 / self.reach;
+        View {
+            clip_from_model: [
+                [scale, 0.0, 0.0, 0.0],
+                [0.0, -scale, 0.0, 0.0],
+                [0.0, 0.0, -0.5 * scale, 0.0],
+                [0.0, 0.0, 0.5, 1.0],
+            ],
+            eye: [0.0, 0.0, 10.0 * self.reach],
+            shading: abi::SHADING_PATCH,
+        }
+    }
+
+    /// The picture of the last draw, four bytes a pixel.
+    pub fn pixels(&self) -> Vec<u8> {
+        self.gpu.target().read_pixels()
+    }
+
+    /// The captured vertices in order, each once: an evaluation shader may run more than once a vertex, with the same result.
+    fn captured(&self) -> Vec<Captured> {
+        let mut vertices = self.surface().captured().to_vec();
+        let room = self.options.capture_vertices as usize;
+        assert!(room == 0 || vertices.len() < room, "the capture is full");
+        vertices.sort_unstable_by_key(key);
+        vertices.dedup_by(|a, b| {
+            let same = key(a) == key(b);
+            assert!(
+                !same || bits(a) == bits(b),
+                "two runs, two results: {a:?} {b:?}"
+            );
+            same
+        });
+        vertices
+    }
+}
+
+impl Drop for Loaded<'_> {
+    fn drop(&mut self) {
+        let device = &self.gpu.device;
+        // A queue that hangs may still use everything.
+        if let Some(surface) = self.surface.take().filter(|_| !device.is_hung()) {
+            // SAFETY: every submission has been waited for.
+            unsafe { surface.destroy(device.raw(), &mut device.allocator()) };
+        }
+    }
+}
+
+fn key(vertex: &Captured) -> (u32, u32, u32) {
+    let [u, v] = vertex.uv.map(f32::to_bits);
+    (vertex.patch_number, v, u)
+}
+
+/// Everything about a vertex, for comparisons without tolerance.
+pub fn bits(vertex: &Captured) -> [u32; 9] {
+    bytemuck::cast(*vertex)
+}
+
+/// A cut.
+pub fn cut(level: f32, spacing: Spacing) -> Cut {
+    Cut { level, spacing }
+}
+
+/// Both spacings.
+pub const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
+
+/// A model made ready by the method of a name.
+pub fn prepare(model: &Model, name: &str) -> Prepared {
+    let method = method(name).expect("the method is one of the table");
+    (method.prepare)(model, PlanOptions::default()).expect("every sound mesh can be prepared")
+}
+
+/// The vertices that the tessellator makes of everything.
+pub fn vertices(prepared: &Prepared, cut: Cut) -> u32 {
+    over_patches(prepared, |pass, patch| {
+        cut.vertices(&prepared.passes[pass], patch)
+    })
+}
+
+/// The sum of something over all patches.
+pub fn over_patches(prepared: &Prepared, count: impl Fn(usize, usize) -> u32) -> u32 {
+    let passes = prepared.passes.iter().enumerate();
+    passes
+        .flat_map(|(number, pass)| (0..pass.patches.len()).map(move |patch| (number, patch)))
+        .map(|(pass, patch)| count(pass, patch))
+        .sum()
+}
+
+/// The most vertices to be captured at once: 64 MiB of them, half of what every device can bind.
+const MOST_CAPTURED: u32 = (64 << 20) / size_of::<Captured>() as u32;
+
+/// Options for capturing everything at the given cuts, with room for vertices that come several times.
+pub fn capturing(prepared: &Prepared, cuts: &[Cut]) -> SurfaceOptions {
+    let most = cuts.iter().map(|&cut| vertices(prepared, cut)).max();
+    SurfaceOptions {
+        capture_vertices: (4 * most.unwrap_or(0)).clamp(1, MOST_CAPTURED),
+        greatest_level: cuts.iter().map(|cut| cut.level).fold(1.0, f32::max),
+        ..Default::default()
+    }
+}

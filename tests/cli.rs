@@ -1,45 +1,11 @@
 //! The `hullform` program as its users meet it: exit codes, messages, and what it prints.
 #![cfg(feature = "cli")]
 
+mod common;
+
+use common::cli::{fails, has_device, hullform, run, stderr, stdout};
 use serde_json::Value;
-use std::process::{Command, Output, Stdio};
-
-fn hullform(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hullform"));
-    command.args(arguments).env_remove("RUST_LOG");
-    command
-}
-
-fn run(arguments: &[&str]) -> Output {
-    let output = hullform(arguments).output();
-    output.expect("the program starts")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// Runs, expects the exit code, and returns what it said on stderr.
-fn fails(arguments: &[&str], code: i32) -> String {
-    let output = run(arguments);
-    let words = stderr(&output);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {words}");
-    assert!(!words.contains("panicked"), "{words}");
-    words
-}
-
-/// Whether some device will do; says so if not.
-fn has_device() -> bool {
-    let found = run(&["devices"]).status.success();
-    if !found {
-        println!("skipped: no suitable Vulkan device");
-    }
-    found
-}
+use std::process::Stdio;
 
 #[test]
 fn every_subcommand_has_help() {

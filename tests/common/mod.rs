@@ -3,6 +3,8 @@
 
 pub mod meshes;
 pub mod surfaces;
+#[cfg(feature = "cli")]
+pub mod cli;
 #[cfg(feature = "host")]
 pub mod gpu;
 pub mod spirv;

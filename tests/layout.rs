@@ -1,0 +1,145 @@
+//! Rust's structs and the compiled shaders agree on where every member lies.
+#![cfg(feature = "vulkan")]
+
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use common::spirv::{Block, Part, Shape, blocks};
+use hullform::abi;
+use hullform::gpu::shaders::MODULES;
+
+const TABLE_1: u32 = abi::BINDING_TABLES + 1;
+
+/// Every module: as it ships, and as this build has it.
+fn modules() -> Vec<(String, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/spirv");
+    let shipped = fs::read_dir(folder).expect("glsl/spirv is a folder");
+    let shipped = shipped
+        .map(|entry| entry.expect("glsl/spirv can be listed").path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "spv"))
+        .map(|path| (common::stem(&path), fs::read(&path).expect("a module")));
+    let built = MODULES.iter();
+    let built = built.map(|(name, bytes)| (format!("{name}, built"), bytes.to_vec()));
+    shipped.chain(built).collect()
+}
+
+/// The struct whose elements, or itself, a block holds; the name it has in Rust.
+fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
+    match block {
+        Block::PushConstants => Some("Frame"),
+        Block::Buffer { binding } => match binding {
+            abi::BINDING_PATCHES => Some("Patch"),
+            abi::BINDING_CAPTURE => Some("Captured"),
+            // The tables of this method; another's are its own.
+            abi::BINDING_TABLES if module.starts_with("quadtree.") => Some("PlanHeader"),
+            TABLE_1 if module.starts_with("quadtree.") => Some("Node"),
+            _ => None,
+        },
+    }
+}
+
+/// The bytes an element, of buffers whose elements are no structs.
+fn plain_stride(binding: u32) -> Option<u32> {
+    match binding {
+        abi::BINDING_POSITIONS => Some(12),
+        abi::BINDING_CONTROLS | abi::BINDING_COUNTERS | abi::BINDING_SLOTS => Some(4),
+        abi::BINDING_TEXTURE => Some(8),
+        abi::BINDING_SCRATCH => Some(16),
+        _ => None,
+    }
+}
+
+/// The struct in a block's last member: as it is, or the elements of an array with their stride.
+fn inner(shape: &Shape) -> (Option<u32>, Option<&Shape>) {
+    match shape.members.last() {
+        Some(Some(Part::Struct(inner))) => (None, Some(inner)),
+        Some(Some(Part::Array(stride, element))) => match element.as_deref() {
+            Some(Part::Struct(inner)) => (Some(*stride), Some(inner)),
+            _ => (Some(*stride), None),
+        },
+        _ => (None, None),
+    }
+}
+
+fn assert_as_in_rust(what: &str, name: &str, shape: &Shape) {
+    let (_, size, members) = abi::LAYOUTS
+        .iter()
+        .find(|(rust, _, _)| *rust == name)
+        .expect("the struct is declared in abi");
+    let (stride, inner) = inner(shape);
+    let inner = inner.unwrap_or_else(|| panic!("{what}: no {name} in {shape:?}"));
+    let offsets: Vec<u32> = members.iter().map(|&(_, at)| at as u32).collect();
+    assert_eq!(inner.offsets, offsets, "{what}: {name} {members:?}");
+    if let Some(stride) = stride {
+        assert_eq!(stride as usize, *size, "{what}: the size of {name}");
+    }
+}
+
+#[test]
+fn compiled_structs_lie_as_in_rust() {
+    let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+    for (module, bytes) in modules() {
+        for (block, shape) in blocks(&bytes) {
+            let what = format!("{module} {block:?}");
+            if let Some(name) = shared_struct(&module, block) {
+                assert_as_in_rust(&what, name, &shape);
+                *seen.entry(name).or_default() += 1;
+            }
+        }
+    }
+    let declared: BTreeSet<&str> = abi::LAYOUTS.iter().map(|&(name, _, _)| name).collect();
+    let compared: BTreeSet<&str> = seen.keys().copied().collect();
+    assert_eq!(compared, declared, "each shared struct is in some module");
+}
+
+#[test]
+fn compiled_arrays_have_the_strides_of_the_buffers() {
+    let mut seen = BTreeSet::new();
+    for (module, bytes) in modules() {
+        for (block, shape) in blocks(&bytes) {
+            let Block::Buffer { binding } = block else {
+                continue;
+            };
+            if let Some(right) = plain_stride(binding) {
+                let (stride, _) = inner(&shape);
+                assert_eq!(stride, Some(right), "{module} binding {binding}");
+                seen.insert(binding);
+            }
+        }
+    }
+    assert_eq!(seen.len(), 6, "each of these buffers is in some module");
+}
+
+/// Behind their count, captured vertices begin at once: the host splits the buffer there.
+#[test]
+fn captured_vertices_begin_behind_their_count() {
+    for (module, bytes) in modules() {
+        let binding = abi::BINDING_CAPTURE;
+        if let Some(shape) = blocks(&bytes).get(&Block::Buffer { binding }) {
+            assert_eq!(shape.offsets, [0, 4], "{module}");
+        }
+    }
+}
+
+/// Arrays within structs: the counts of a plan's header.
+#[test]
+fn counts_in_a_plans_header_are_words() {
+    let bytes = modules();
+    let headers = bytes.iter().filter(|(name, _)| name == "quadtree.tesc");
+    for (_, bytes) in headers {
+        let shape = &blocks(bytes)[&Block::Buffer {
+            binding: abi::BINDING_TABLES,
+        }];
+        let header = inner(shape).1.expect("a header");
+        assert_eq!(header.members.last(), Some(&Some(Part::Array(4, None))));
+    }
+}
+
+/// The push constants fit into what every device has.
+#[test]
+fn push_constants_fit_every_device() {
+    assert!(size_of::<abi::Frame>() <= 128);
+}

@@ -206,8 +206,10 @@ impl Loaded<'_> {
     pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
         let batches = self.surface().batches(cut)?;
         self.write_slots(cut, &batches);
-        let mut all = Frame::default();
-        all.passes = vec![Vec::new(); self.prepared().passes.len()];
+        let mut all = Frame {
+            passes: vec![Vec::new(); self.prepared().passes.len()],
+            ..Default::default()
+        };
         for batches in self.submissions(&batches) {
             let mut frame = self.draw(cut, fill, batches)?;
             all.passes[batches[0].pass].append(&mut frame.passes[0]);

@@ -61,7 +61,7 @@ fn captured_vertices_are_those_of_the_twins() {
         for method in METHODS {
             let mut worst = Worst::default();
             each_cut(&gpu, &model, method, &cuts, |cut, prepared, frame| {
-                let step = (vertices(prepared, cut) / 2000 | 1) as usize;
+                let step = ((vertices(prepared, cut) / 2000) | 1) as usize;
                 worst.take(from_twin(&model, prepared, frame, step));
             });
             assert_near(&format!("{name} {}", method.name), worst, 1e-6, 0.1);
@@ -78,7 +78,7 @@ fn fractional_levels_are_those_of_the_twins() {
         let cuts = [1.5, 2.3, 4.7, 10.1, 63.3].map(|level| cut(level, Spacing::FractionalEven));
         let mut worst = Worst::default();
         each_cut(&gpu, &model, &METHODS[0], &cuts, |cut, prepared, frame| {
-            let step = (vertices(prepared, cut) / 4000 | 1) as usize;
+            let step = ((vertices(prepared, cut) / 4000) | 1) as usize;
             worst.take(from_twin(&model, prepared, frame, step));
         });
         assert_near(name, worst, 1e-6, 0.1);
@@ -110,7 +110,7 @@ fn captured_vertices_keep_the_contract() {
         for method in METHODS {
             let mut worst = Worst::default();
             each_cut(&gpu, &model, method, &cuts, |cut, prepared, frame| {
-                let step = (vertices(prepared, cut) / 400 | 1) as usize;
+                let step = ((vertices(prepared, cut) / 400) | 1) as usize;
                 worst.take(from_truth(&model, method, prepared, frame, step));
             });
             let what = format!("{name} {}", method.name);

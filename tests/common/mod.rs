@@ -1,13 +1,13 @@
 //! What several tests share: the models and shapes beside the project, where they are.
 #![allow(dead_code)]
 
-pub mod meshes;
-pub mod surfaces;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "host")]
 pub mod gpu;
+pub mod meshes;
 pub mod spirv;
+pub mod surfaces;
 
 use std::path::PathBuf;
 

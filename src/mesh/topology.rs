@@ -6,7 +6,8 @@
 
 mod connect;
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use crate::mesh::control_mesh::ordered;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
@@ -64,7 +65,7 @@ pub struct Topology {
 impl Topology {
     /// The topology of a whole control mesh, with boundary rules and non-manifold places turned into sharpness.
     pub fn new(mesh: &ControlMesh) -> Topology {
-        let mut edge_sharpness = HashMap::new();
+        let mut edge_sharpness = FxHashMap::default();
         for crease in mesh.creases() {
             edge_sharpness.insert(ordered(crease.vertices), clamp(crease.sharpness));
         }
@@ -184,7 +185,8 @@ impl Topology {
             let sharpness = around
                 .iter()
                 .map(|&edge| self.edges[edge as usize].sharpness);
-            let next = decayed_around_vertex(self.options.creasing, &sharpness.collect::<Vec<_>>());
+            let sharpness: SmallVec<[f32; 8]> = sharpness.collect();
+            let next = decayed_around_vertex(self.options.creasing, &sharpness);
             for (&edge, next) in around.iter().zip(next) {
                 let edge = &mut self.edges[edge as usize];
                 edge.next[usize::from(edge.vertices[1] == vertex)] = next;
@@ -287,8 +289,8 @@ impl Topology {
         let last = self.face_edges(face)[(corner as usize + arity - 1) % arity];
         let mut fan = Fan {
             vertex,
-            edges: vec![first, last],
-            faces: vec![face],
+            edges: SmallVec::from_slice(&[first, last]),
+            faces: SmallVec::from_slice(&[face]),
             at: 0,
             closed: false,
         };
@@ -305,7 +307,7 @@ impl Topology {
             fan.faces.push(next);
             fan.edges.push(edge);
         }
-        let mut before = Vec::new();
+        let mut before: SmallVec<[(u32, u32); 8]> = SmallVec::new();
         let (mut here, mut across) = (face, first);
         while let Some((next, edge)) = self.crossing(&fan, here, across) {
             before.push((next, edge));
@@ -313,8 +315,10 @@ impl Topology {
         }
         fan.at = before.len();
         before.reverse();
-        fan.faces.splice(0..0, before.iter().map(|&(face, _)| face));
-        fan.edges.splice(0..0, before.iter().map(|&(_, edge)| edge));
+        fan.faces
+            .insert_many(0, before.iter().map(|&(face, _)| face));
+        fan.edges
+            .insert_many(0, before.iter().map(|&(_, edge)| edge));
         fan
     }
 
@@ -365,9 +369,9 @@ pub struct Fan {
     /// The vertex in the middle.
     pub vertex: u32,
     /// The edges in order.
-    pub edges: Vec<u32>,
+    pub edges: SmallVec<[u32; 8]>,
     /// The faces in order.
-    pub faces: Vec<u32>,
+    pub faces: SmallVec<[u32; 8]>,
     /// The number, among `faces`, of the face that asked.
     pub at: usize,
     /// Whether it goes all the way round.

@@ -5,6 +5,7 @@
 //! for the next step. What lies on the rim of such a topology has the wrong rules; no cell ever asks for it.
 
 use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 use crate::mesh::sharpness::{decayed, decayed_around_vertex, is_sharp};
 use crate::mesh::topology::Topology;
@@ -177,7 +178,7 @@ impl Step<'_> {
             return (sharpness, [0.0; 2]);
         }
         let around = self.parent.vertex_edges(vertex);
-        let halves: Vec<f32> = around
+        let halves: SmallVec<[f32; 8]> = around
             .iter()
             .map(|&e| self.parent.edge(e).next_at(vertex))
             .collect();

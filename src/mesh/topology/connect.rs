@@ -1,6 +1,6 @@
 //! From faces to who touches whom.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::mesh::SchemeOptions;
 use crate::mesh::topology::{Edge, FaceCorner, Topology};
@@ -94,7 +94,7 @@ impl Topology {
 
     /// The given faces as a topology of their own, with the numbers that its vertices have here.
     pub(crate) fn excerpt(&self, faces: &[u32]) -> (Topology, Vec<u32>) {
-        let mut numbers = HashMap::new();
+        let mut numbers = FxHashMap::default();
         let mut vertices = Vec::new();
         let mut number = |vertex: u32| {
             *numbers.entry(vertex).or_insert_with(|| {

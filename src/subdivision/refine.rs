@@ -4,7 +4,6 @@
 //! from faces that touch the parent. So a step keeps the children of some cells and the faces that touch them, and the same holds
 //! for the next step. What lies on the rim of such a topology has the wrong rules; no cell ever asks for it.
 
-use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use crate::mesh::sharpness::{decayed, decayed_around_vertex, is_sharp};
@@ -50,11 +49,13 @@ fn child(topology: &Topology, face: u32, corner: u32) -> [Origin; 4] {
 /// The faces that share a vertex with any of the `faces`, which come first; each once.
 pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
     let mut all = faces.to_vec();
-    let mut seen: FxHashSet<u32> = faces.iter().copied().collect();
     for &face in faces {
         for &vertex in topology.face(face) {
-            let around = topology.vertex_faces(vertex).iter().map(|c| c.face);
-            all.extend(around.filter(|&face| seen.insert(face)));
+            for corner in topology.vertex_faces(vertex) {
+                if !all.contains(&corner.face) {
+                    all.push(corner.face);
+                }
+            }
         }
     }
     all

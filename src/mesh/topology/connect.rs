@@ -15,18 +15,21 @@ pub struct Lists<T> {
 impl<T: Copy + Default> Lists<T> {
     /// Sorts `(list, item)` pairs into `count` lists, keeping the order within each.
     fn gather(count: usize, pairs: impl Iterator<Item = (u32, T)> + Clone) -> Lists<T> {
-        let mut offsets = vec![0u32; count + 1];
+        // Two places ahead of its list, an offset first counts, then sums up, and moves to its own place as the list fills.
+        let mut offsets = vec![0u32; count + 2];
+        let mut total = 0;
         for (list, _) in pairs.clone() {
-            offsets[list as usize + 1] += 1;
+            offsets[list as usize + 2] += 1;
+            total += 1;
         }
-        for i in 0..count {
-            offsets[i + 1] += offsets[i];
+        for i in 2..offsets.len() {
+            offsets[i] += offsets[i - 1];
         }
-        let mut next = offsets.clone();
-        let mut items = vec![T::default(); offsets[count] as usize];
+        let mut items = vec![T::default(); total];
         for (list, item) in pairs {
-            items[next[list as usize] as usize] = item;
-            next[list as usize] += 1;
+            let next = &mut offsets[list as usize + 1];
+            items[*next as usize] = item;
+            *next += 1;
         }
         Lists { offsets, items }
     }
@@ -40,17 +43,20 @@ impl<T: Copy + Default> Lists<T> {
 impl Topology {
     /// Connects faces whose sharpness is known: `edge(a, b)` tells that of an edge now and, at the ends `a` and `b`, next.
     pub(crate) fn connect<'a>(
-        faces: impl Iterator<Item = &'a [u32]>,
+        faces: impl Iterator<Item = &'a [u32]> + Clone,
         vertex_sharpness: Vec<f32>,
         options: SchemeOptions,
         edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
     ) -> Topology {
+        let corners = faces.clone().map(<[u32]>::len).sum();
         let mut topology = Topology {
-            face_offsets: vec![0],
+            face_offsets: Vec::with_capacity(faces.size_hint().0 + 1),
+            face_vertices: Vec::with_capacity(corners),
             vertex_sharpness,
             options,
             ..Default::default()
         };
+        topology.face_offsets.push(0);
         for face in faces {
             topology.face_vertices.extend_from_slice(face);
             topology
@@ -72,10 +78,11 @@ impl Topology {
             sides.extend(vertices.iter().zip(ends).map(|(&a, &b)| [a, b]));
         }
         self.face_edges = Vec::with_capacity(sides.len());
-        for (side, first) in first_alike(self.vertex_count(), &sides)
-            .into_iter()
-            .enumerate()
-        {
+        let first = first_alike(self.vertex_count(), &sides);
+        let is_first = |&(side, &first): &(usize, &u32)| side == first as usize;
+        let edges = first.iter().enumerate().filter(is_first).count();
+        self.edges = Vec::with_capacity(edges);
+        for (side, &first) in first.iter().enumerate() {
             let number = if first as usize == side {
                 let vertices = sides[side];
                 let (sharpness, next) = edge(vertices[0], vertices[1]);

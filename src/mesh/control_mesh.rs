@@ -153,7 +153,7 @@ impl ControlMesh {
     }
 
     /// The vertices of every face in file order.
-    pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         (0..self.face_count()).map(|face| self.face(face))
     }
 

@@ -33,7 +33,7 @@ pub fn decayed(sharpness: f32) -> f32 {
 /// The sharpness one level on of the edges around a vertex, each at this vertex's end.
 ///
 /// Chaikin's rule takes three quarters of an edge's sharpness and one quarter of the mean of the other semi-sharp edges' before it decays.
-pub fn decayed_around_vertex(method: CreaseMethod, edges: &[f32]) -> Vec<f32> {
+pub fn decayed_around_vertex(method: CreaseMethod, edges: &[f32]) -> SmallVec<[f32; 8]> {
     let semi_sharp = edges.iter().filter(|&&s| is_semi_sharp(s)).count();
     let sum = sum(edges.iter().copied().filter(|&s| is_semi_sharp(s)));
     let next = |&sharpness: &f32| {

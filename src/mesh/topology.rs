@@ -4,43 +4,16 @@
 //! mean for the limit is settled once, in [`Topology::new`], the way OpenSubdiv settles it: boundary and non-manifold edges
 //! become infinitely sharp, and so do non-manifold vertices other than those on a plain non-manifold crease.
 
-use std::collections::HashMap;
+mod connect;
+
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use crate::mesh::control_mesh::ordered;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, SchemeOptions};
 
-/// Lists of different lengths, one after another.
-#[derive(Clone, Debug, Default)]
-pub struct Lists<T> {
-    offsets: Vec<u32>,
-    items: Vec<T>,
-}
-
-impl<T: Copy + Default> Lists<T> {
-    /// Sorts `(list, item)` pairs into `count` lists, keeping the order within each.
-    fn gather(count: usize, pairs: impl Iterator<Item = (u32, T)> + Clone) -> Lists<T> {
-        let mut offsets = vec![0u32; count + 1];
-        for (list, _) in pairs.clone() {
-            offsets[list as usize + 1] += 1;
-        }
-        for i in 0..count {
-            offsets[i + 1] += offsets[i];
-        }
-        let mut next = offsets.clone();
-        let mut items = vec![T::default(); offsets[count] as usize];
-        for (list, item) in pairs {
-            items[next[list as usize] as usize] = item;
-            next[list as usize] += 1;
-        }
-        Lists { offsets, items }
-    }
-
-    /// The list with number `list`.
-    pub fn get(&self, list: u32) -> &[T] {
-        &self.items[self.offsets[list as usize] as usize..self.offsets[list as usize + 1] as usize]
-    }
-}
+pub use connect::Lists;
 
 /// An edge and how sharp it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +65,7 @@ pub struct Topology {
 impl Topology {
     /// The topology of a whole control mesh, with boundary rules and non-manifold places turned into sharpness.
     pub fn new(mesh: &ControlMesh) -> Topology {
-        let mut edge_sharpness = HashMap::new();
+        let mut edge_sharpness = FxHashMap::default();
         for crease in mesh.creases() {
             edge_sharpness.insert(ordered(crease.vertices), clamp(crease.sharpness));
         }
@@ -111,116 +84,6 @@ impl Topology {
         topology.sharpen();
         topology.foresee();
         topology
-    }
-
-    /// Connects faces whose sharpness is known: `edge(a, b)` tells that of an edge now and, at the ends `a` and `b`, next.
-    pub(crate) fn connect<'a>(
-        faces: impl Iterator<Item = &'a [u32]>,
-        vertex_sharpness: Vec<f32>,
-        options: SchemeOptions,
-        edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
-    ) -> Topology {
-        let mut topology = Topology {
-            face_offsets: vec![0],
-            vertex_sharpness,
-            options,
-            ..Default::default()
-        };
-        let mut numbers: HashMap<[u32; 2], u32> = HashMap::new();
-        for face in faces {
-            for (i, &a) in face.iter().enumerate() {
-                let b = face[(i + 1) % face.len()];
-                let number = *numbers.entry(ordered([a, b])).or_insert_with(|| {
-                    let (sharpness, next) = edge(a, b);
-                    topology.edges.push(Edge {
-                        vertices: [a, b],
-                        sharpness,
-                        next,
-                    });
-                    topology.edges.len() as u32 - 1
-                });
-                topology.face_edges.push(number);
-            }
-            topology.face_vertices.extend_from_slice(face);
-            topology
-                .face_offsets
-                .push(topology.face_vertices.len() as u32);
-        }
-        topology.holes = vec![false; topology.face_count()];
-        topology.relate();
-        topology
-    }
-
-    /// The given faces as a topology of their own, with the numbers that its vertices have here.
-    pub(crate) fn excerpt(&self, faces: &[u32]) -> (Topology, Vec<u32>) {
-        let mut numbers = HashMap::new();
-        let mut vertices = Vec::new();
-        let mut number = |vertex: u32| {
-            *numbers.entry(vertex).or_insert_with(|| {
-                vertices.push(vertex);
-                vertices.len() as u32 - 1
-            })
-        };
-        let local: Vec<Vec<u32>> = faces
-            .iter()
-            .map(|&face| self.face(face).iter().map(|&v| number(v)).collect())
-            .collect();
-        let sharpness = vertices
-            .iter()
-            .map(|&vertex| self.vertex_sharpness(vertex))
-            .collect();
-        let topology = Topology::connect(
-            local.iter().map(|face| &face[..]),
-            sharpness,
-            self.options,
-            |a, b| {
-                let [a, b] = [a, b].map(|local| vertices[local as usize]);
-                let edge = self
-                    .find_edge(a, b)
-                    .expect("an edge of a face is an edge of the mesh");
-                (edge.sharpness, [edge.next_at(a), edge.next_at(b)])
-            },
-        );
-        (topology, vertices)
-    }
-
-    fn find_edge(&self, a: u32, b: u32) -> Option<&Edge> {
-        let edges = self.vertex_edges(a).iter().map(|&edge| self.edge(edge));
-        edges.into_iter().find(|edge| edge.other(a) == b)
-    }
-
-    /// Fills the lists that answer "which faces and edges touch".
-    fn relate(&mut self) {
-        let corners =
-            |face: u32| self.face_offsets[face as usize]..self.face_offsets[face as usize + 1];
-        let faces = 0..self.face_count() as u32;
-        let edge_faces = faces
-            .clone()
-            .flat_map(|face| corners(face).map(move |at| (at, face)))
-            .map(|(at, face)| (self.face_edges[at as usize], face));
-        let vertex_faces = faces.flat_map(|face| {
-            corners(face).enumerate().map(move |(corner, at)| {
-                (
-                    at,
-                    FaceCorner {
-                        face,
-                        corner: corner as u32,
-                    },
-                )
-            })
-        });
-        let vertex_faces =
-            vertex_faces.map(|(at, corner)| (self.face_vertices[at as usize], corner));
-        let vertex_edges = self
-            .edges
-            .iter()
-            .enumerate()
-            .flat_map(|(number, edge)| edge.vertices.map(|vertex| (vertex, number as u32)));
-        let edge_faces = Lists::gather(self.edges.len(), edge_faces);
-        let vertex_faces = Lists::gather(self.vertex_sharpness.len(), vertex_faces);
-        self.vertex_edges = Lists::gather(self.vertex_sharpness.len(), vertex_edges);
-        self.edge_faces = edge_faces;
-        self.vertex_faces = vertex_faces;
     }
 
     /// Boundary and non-manifold rules, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
@@ -322,7 +185,8 @@ impl Topology {
             let sharpness = around
                 .iter()
                 .map(|&edge| self.edges[edge as usize].sharpness);
-            let next = decayed_around_vertex(self.options.creasing, &sharpness.collect::<Vec<_>>());
+            let sharpness: SmallVec<[f32; 8]> = sharpness.collect();
+            let next = decayed_around_vertex(self.options.creasing, &sharpness);
             for (&edge, next) in around.iter().zip(next) {
                 let edge = &mut self.edges[edge as usize];
                 edge.next[usize::from(edge.vertices[1] == vertex)] = next;
@@ -425,8 +289,8 @@ impl Topology {
         let last = self.face_edges(face)[(corner as usize + arity - 1) % arity];
         let mut fan = Fan {
             vertex,
-            edges: vec![first, last],
-            faces: vec![face],
+            edges: SmallVec::from_slice(&[first, last]),
+            faces: SmallVec::from_slice(&[face]),
             at: 0,
             closed: false,
         };
@@ -443,7 +307,7 @@ impl Topology {
             fan.faces.push(next);
             fan.edges.push(edge);
         }
-        let mut before = Vec::new();
+        let mut before: SmallVec<[(u32, u32); 8]> = SmallVec::new();
         let (mut here, mut across) = (face, first);
         while let Some((next, edge)) = self.crossing(&fan, here, across) {
             before.push((next, edge));
@@ -451,8 +315,10 @@ impl Topology {
         }
         fan.at = before.len();
         before.reverse();
-        fan.faces.splice(0..0, before.iter().map(|&(face, _)| face));
-        fan.edges.splice(0..0, before.iter().map(|&(_, edge)| edge));
+        fan.faces
+            .insert_many(0, before.iter().map(|&(face, _)| face));
+        fan.edges
+            .insert_many(0, before.iter().map(|&(_, edge)| edge));
         fan
     }
 
@@ -503,9 +369,9 @@ pub struct Fan {
     /// The vertex in the middle.
     pub vertex: u32,
     /// The edges in order.
-    pub edges: Vec<u32>,
+    pub edges: SmallVec<[u32; 8]>,
     /// The faces in order.
-    pub faces: Vec<u32>,
+    pub faces: SmallVec<[u32; 8]>,
     /// The number, among `faces`, of the face that asked.
     pub at: usize,
     /// Whether it goes all the way round.

@@ -1,15 +1,14 @@
 //! From a configuration to a plan: adaptive refinement, level by level, with every vertex kept as a row of weights over the 1-ring.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::plan::configuration::Configuration;
+use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{
-    Blend, BsplinePatch, ControlPoint, Mask, bspline_patch, limit_stencil, refine,
-};
+use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, limit_stencil, refine};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,17 +77,14 @@ impl Plan {
 
     /// Builds the plan of a configuration.
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Plan {
-        let mut level = Level::base(configuration);
-        let ring_size = level.ring_size();
+        let base = Level::base(configuration);
         let mut builder = Builder {
             options,
-            rows: Vec::new(),
-            numbers: HashMap::new(),
+            rows: Rows::zero(base.rows.width(), Plan::CORNER_STENCILS),
+            corners: [false; 4],
+            numbers: FxHashMap::default(),
         };
-        for corner in 0..4 {
-            builder.rows.extend(level.limit(0, corner));
-        }
-        let tree = builder.grow(&mut level, ring_size).fold();
+        let tree = builder.grow(base).fold();
         let mut levels = vec![0; builder.rows.len()];
         levels[Plan::CORNER_STENCILS..].fill(options.max_level);
         require(
@@ -98,13 +94,7 @@ impl Plan {
             options.max_level,
             &mut levels,
         );
-        sorted(
-            tree.flatten(),
-            builder.rows,
-            &levels,
-            ring_size,
-            options.max_level,
-        )
+        sorted(tree.flatten(), &builder.rows, &levels, options.max_level)
     }
 
     /// How many stencils each level 0..=max_level needs; they are the first ones.
@@ -121,17 +111,15 @@ impl Plan {
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
 struct Level {
     topology: Topology,
-    rows: Vec<Vec<f64>>,
+    rows: Rows,
 }
 
 impl Level {
     /// The level at which the plan begins: the quad itself, or the n-gon's part at its corner 0.
     fn base(configuration: &Configuration) -> Level {
         let topology = configuration.topology();
-        let count = topology.vertex_count();
-        let unit = |i| (0..count).map(|j| f64::from(u8::from(i == j))).collect();
         let base = Level {
-            rows: (0..count).map(unit).collect(),
+            rows: Rows::identity(topology.vertex_count()),
             topology,
         };
         if base.topology.face(0).len() == 4 {
@@ -141,36 +129,16 @@ impl Level {
         }
     }
 
-    fn ring_size(&self) -> usize {
-        self.rows[0].len()
-    }
-
     fn refined(&self, cells: &[(u32, u32)]) -> Level {
         let refined = refine(&self.topology, cells);
-        let rows = refined.masks.iter().map(|mask| self.row(mask)).collect();
+        let mut rows = Rows::zero(self.rows.width(), 0);
+        rows.reserve(refined.masks.len());
+        for mask in &refined.masks {
+            rows.push(mask, &self.rows);
+        }
         Level {
             topology: refined.topology,
             rows,
-        }
-    }
-
-    fn row(&self, mask: &Mask) -> Vec<f64> {
-        Vec::blend(mask, &self.rows)
-    }
-
-    /// Limit position and tangents at a corner of a cell; refined on until no semi-sharp feature is left there.
-    fn limit(&self, cell: u32, corner: u32) -> [Vec<f64>; 3] {
-        match limit_stencil(&self.topology, cell, corner) {
-            Some(limit) => [
-                self.row(&limit.position),
-                self.row(&limit.du),
-                self.row(&limit.dv),
-            ],
-            None => {
-                let [position, du, dv] = self.refined(&[(cell, corner)]).limit(0, corner);
-                let doubled = |row: Vec<f64>| row.into_iter().map(|weight| 2.0 * weight).collect();
-                [position, doubled(du), doubled(dv)]
-            }
         }
     }
 }
@@ -178,7 +146,7 @@ impl Level {
 /// A cell that waits to be turned into a leaf or four cells.
 #[derive(Clone, Copy)]
 struct Cell {
-    /// The corner of the face that it touches, if any.
+    /// The corner of the face that it touches, if any; the face itself touches all four.
     corner: Option<u32>,
 }
 
@@ -191,8 +159,12 @@ enum Grown {
 
 struct Builder {
     options: PlanOptions,
-    rows: Vec<Vec<f64>>,
-    numbers: HashMap<(u32, ControlPoint), u32>,
+    /// First the corners' limits, as [`Plan::stencils`] has them, then the control points as they are met.
+    rows: Rows,
+    /// Which corners' limits are known.
+    corners: [bool; 4],
+    /// The rows of this level's control points.
+    numbers: FxHashMap<ControlPoint, u32>,
 }
 
 /// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
@@ -203,37 +175,61 @@ const DEEPEST: u32 = 11;
 
 impl Builder {
     /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
-    fn grow(&mut self, base: &mut Level, ring_size: usize) -> Tree {
-        debug_assert_eq!(base.ring_size(), ring_size);
+    fn grow(&mut self, base: Level) -> Tree {
         let mut grown: Vec<Vec<Grown>> = Vec::new();
         let mut cells = vec![Cell { corner: None }];
-        let mut level: Option<Level> = None;
+        let mut level = base;
         for depth in 0.. {
-            let here = level.as_ref().unwrap_or(base);
+            self.numbers.clear();
             let mut next = Vec::new();
             let mut parents = Vec::new();
-            let row = cells.iter().enumerate().map(|(number, &cell)| {
-                match self.leaf(here, number as u32, cell, depth) {
-                    Some(node) => Grown::Leaf(node),
-                    None => {
-                        let first = next.len();
-                        next.extend((0..4).map(|corner| Cell {
-                            corner: (depth == 0 || cell.corner == Some(corner)).then_some(corner),
-                        }));
-                        parents.extend((0..4).map(|corner| (number as u32, corner)));
-                        Grown::Children(first)
-                    }
+            let mut row = Vec::with_capacity(cells.len());
+            for (number, &cell) in (0..).zip(&cells) {
+                let leaf = self.leaf(&level, number, cell, depth);
+                for corner in (0..4).filter(|&c| depth == 0 || cell.corner == Some(c)) {
+                    self.corner(&level, number, corner, depth, leaf.is_some());
                 }
-            });
-            let row: Vec<Grown> = row.collect();
+                row.push(leaf.map_or(Grown::Children(next.len()), Grown::Leaf));
+                if let Grown::Children(_) = row[row.len() - 1] {
+                    next.extend((0..4).map(|corner| Cell {
+                        corner: (depth == 0 || cell.corner == Some(corner)).then_some(corner),
+                    }));
+                    parents.extend((0..4).map(|corner| (number, corner)));
+                }
+            }
             grown.push(row);
             if next.is_empty() {
                 break;
             }
-            level = Some(here.refined(&parents));
+            level = level.refined(&parents);
             cells = next;
         }
         join(&grown, 0, 0)
+    }
+
+    /// Limit position and tangents at a corner of the face, once no semi-sharp feature is left there; of a leaf, which the levels to
+    /// come do without, by refining on.
+    fn corner(&mut self, level: &Level, number: u32, corner: u32, depth: u32, leaf: bool) {
+        if self.corners[corner as usize] {
+            return;
+        }
+        if let Some(limit) = limit_stencil(&level.topology, number, corner) {
+            self.corners[corner as usize] = true;
+            let first = 3 * corner as usize;
+            for (i, mask) in [limit.position, limit.du, limit.dv].iter().enumerate() {
+                self.rows.add(first + i, mask, &level.rows);
+            }
+            // A child's parameters run twice as fast as its parent's.
+            for i in [1, 2] {
+                let tangent = self.rows.row_mut(first + i);
+                tangent
+                    .iter_mut()
+                    .for_each(|weight| *weight *= f64::from(1 << depth));
+            }
+        } else if leaf {
+            let child = level.refined(&[(number, corner)]);
+            self.corner(&child, 0, corner, depth + 1, leaf);
+        }
     }
 
     /// The cell as a leaf, or None when it must be refined.
@@ -244,14 +240,14 @@ impl Builder {
             (Some(patch), _) if patch.crease.is_none() => {
                 let mirrored = patch.mirrored;
                 Some(Node::Regular {
-                    points: self.points(level, depth, &patch),
+                    points: self.points(level, &patch),
                     mirrored,
                 })
             }
             (Some(patch), _) if self.options.direct_creases || last => {
                 let (edge, sharpness) = patch.crease?;
                 Some(Node::Crease {
-                    points: self.points(level, depth, &patch),
+                    points: self.points(level, &patch),
                     edge,
                     sharpness,
                 })
@@ -267,10 +263,10 @@ impl Builder {
         }
     }
 
-    fn points(&mut self, level: &Level, depth: u32, patch: &BsplinePatch) -> [u32; 16] {
+    fn points(&mut self, level: &Level, patch: &BsplinePatch) -> [u32; 16] {
         patch.points.map(|point| {
-            *self.numbers.entry((depth, point)).or_insert_with(|| {
-                self.rows.push(level.row(&point.mask()));
+            *self.numbers.entry(point).or_insert_with(|| {
+                self.rows.push(&point.mask(), &level.rows);
                 self.rows.len() as u32 - 1
             })
         })
@@ -338,13 +334,7 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
 }
 
 /// Sorts the stencils by level and renumbers the points of the nodes.
-fn sorted(
-    mut nodes: Vec<Node>,
-    rows: Vec<Vec<f64>>,
-    levels: &[u32],
-    ring_size: usize,
-    max_level: u32,
-) -> Plan {
+fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_level: u32) -> Plan {
     let mut order: Vec<u32> = (0..rows.len() as u32).collect();
     order.sort_by_key(|&point| levels[point as usize]);
     let mut place = vec![0; rows.len()];
@@ -363,15 +353,12 @@ fn sorted(
             Node::Internal { .. } | Node::Extraordinary { .. } => {}
         }
     }
-    let mut rows: Vec<Option<Vec<f64>>> = rows.into_iter().map(Some).collect();
     let stencils = order.iter().map(|&old| Stencil {
-        weights: rows[old as usize]
-            .take()
-            .expect("an order names each point once"),
+        weights: rows.row(old as usize).to_vec(),
         level: levels[old as usize],
     });
     Plan {
-        ring_size,
+        ring_size: rows.width(),
         max_level,
         nodes,
         stencils: stencils.collect(),

@@ -1,8 +1,7 @@
 //! The configuration database: which configurations there are, and the plan of each (Brainerd et al. 2016, section 4.3).
 
-use std::collections::HashMap;
-
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::plan::builder::{Plan, PlanOptions};
 use crate::plan::configuration::Configuration;
@@ -10,7 +9,7 @@ use crate::plan::configuration::Configuration;
 /// Configurations by number, each once.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    numbers: HashMap<Configuration, u32>,
+    numbers: FxHashMap<Configuration, u32>,
 }
 
 impl Catalogue {

@@ -5,8 +5,7 @@
 //! Nothing farther out has a say (see `subdivision::refine`), except that under Chaikin's rule the next sharpness at an edge's far end
 //! does: it is part of what an edge brings along.
 
-use std::collections::HashMap;
-
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::mesh::sharpness::is_sharp;
@@ -41,14 +40,9 @@ impl Ring {
 
     /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner.
     pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Ring {
-        let mut walk = Walk {
-            topology,
-            numbers: HashMap::new(),
-            vertices: Vec::new(),
-            words: Vec::new(),
-        };
-        walk.options(topology.options());
         let faces = surrounding_faces(topology, face, start);
+        let mut walk = Walk::new(topology, faces.len());
+        walk.options(topology.options());
         walk.words.push(faces.len() as u32);
         for &(face, start) in &faces {
             walk.face(face, start);
@@ -69,9 +63,9 @@ impl Ring {
 
 /// Every face that touches `face`, which comes first: around each corner in turn, counter-clockwise and then, where a boundary stopped the
 /// walk, clockwise; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
-fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> Vec<(u32, u32)> {
+fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> SmallVec<[(u32, u32); 16]> {
     let arity = topology.face(face).len() as u32;
-    let mut found = vec![(face, start)];
+    let mut found = SmallVec::from_slice(&[(face, start)]);
     let mut add = |next: u32, vertex: u32| {
         if found.iter().all(|&(known, _)| known != next) {
             let corner = topology
@@ -82,21 +76,24 @@ fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> Vec<(u32, u3
             found.push((next, corner as u32));
         }
     };
-    for corner in (0..arity).map(|i| (start + i) % arity) {
+    'corners: for corner in (0..arity).map(|i| (start + i) % arity) {
         let vertex = topology.face(face)[corner as usize];
         let edges = topology.face_edges(face);
+        let around = topology.vertex_faces(vertex);
         for edge in [
             edges[((corner + arity - 1) % arity) as usize],
             edges[corner as usize],
         ] {
-            topology
-                .walk(vertex, face, edge)
-                .for_each(|(next, _)| add(next, vertex));
+            let mut met = 1;
+            for (next, _) in topology.walk(vertex, face, edge) {
+                add(next, vertex);
+                met += 1;
+            }
+            if met == around.len() {
+                continue 'corners;
+            }
         }
-        topology
-            .vertex_faces(vertex)
-            .iter()
-            .for_each(|corner| add(corner.face, vertex));
+        around.iter().for_each(|corner| add(corner.face, vertex));
     }
     found
 }
@@ -104,12 +101,23 @@ fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> Vec<(u32, u3
 /// Writes down a ring and numbers its vertices on the way.
 struct Walk<'a> {
     topology: &'a Topology,
-    numbers: HashMap<u32, u32>,
+    numbers: FxHashMap<u32, u32>,
     vertices: Vec<u32>,
     words: Vec<u32>,
 }
 
 impl Walk<'_> {
+    /// Nothing yet, with room for what a ring of so many quads takes.
+    fn new(topology: &Topology, faces: usize) -> Walk<'_> {
+        let vertices = 2 * faces;
+        Walk {
+            topology,
+            numbers: FxHashMap::with_capacity_and_hasher(vertices, Default::default()),
+            vertices: Vec::with_capacity(vertices),
+            words: Vec::with_capacity(6 + 5 * faces + 5),
+        }
+    }
+
     fn options(&mut self, options: SchemeOptions) {
         let chaikin = u32::from(options.creasing == CreaseMethod::Chaikin);
         let smooth = u32::from(options.triangles == TriangleSubdivision::Smooth);
@@ -139,11 +147,11 @@ impl Walk<'_> {
             let edges = self.topology.face_edges(face);
             for &number in (0..edges.len()).map(|i| &edges[(start as usize + i) % edges.len()]) {
                 let edge = self.topology.edge(number);
+                if !is_sharp(edge.sharpness) || seen.contains(&number) {
+                    continue;
+                }
                 let [a, b] = edge.vertices.map(|vertex| self.numbers[&vertex]);
-                if is_sharp(edge.sharpness)
-                    && (a.min(b) as usize) < corners
-                    && !seen.contains(&number)
-                {
+                if (a.min(b) as usize) < corners {
                     seen.push(number);
                     let ends = if a < b { [a, b] } else { [b, a] };
                     let next = if a < b {
@@ -183,16 +191,16 @@ impl Configuration {
             },
             ..SchemeOptions::default()
         };
-        let faces: Vec<Vec<u32>> = (0..word())
+        let faces: Vec<SmallVec<[u32; 4]>> = (0..word())
             .map(|_| (0..word()).map(|_| word()).collect())
             .collect();
         let vertices = faces.iter().flatten().max().expect("a face has vertices") + 1;
         let mut sharpness = vec![0.0; vertices as usize];
-        for corner in 0..faces[0].len() {
-            sharpness[corner] = f32::from_bits(word());
+        for sharpness in &mut sharpness[..faces[0].len()] {
+            *sharpness = f32::from_bits(word());
         }
         let rest: Vec<u32> = words.collect();
-        let edges: HashMap<[u32; 2], [f32; 3]> = rest
+        let edges: FxHashMap<[u32; 2], [f32; 3]> = rest
             .chunks_exact(5)
             .map(|edge| {
                 (

@@ -4,6 +4,7 @@ mod builder;
 mod catalogue;
 mod configuration;
 mod packing;
+mod rows;
 mod span;
 mod tree;
 mod walk;

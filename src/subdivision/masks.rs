@@ -8,8 +8,8 @@ use crate::mesh::TriangleSubdivision;
 use crate::mesh::sharpness::{Rule, is_sharp, rule, sum};
 use crate::mesh::topology::Topology;
 
-/// A point as a weighted sum of vertices. A vertex may occur more than once.
-pub type Mask = SmallVec<[(u32, f64); 20]>;
+/// A point as a weighted sum of vertices. A vertex may occur more than once: that of a regular vertex point has 21 terms.
+pub type Mask = SmallVec<[(u32, f64); 21]>;
 
 /// What masks can be applied to: positions, or rows of weights.
 pub trait Blend: Sized {

@@ -4,9 +4,9 @@
 //! from faces that touch the parent. So a step keeps the children of some cells and the faces that touch them, and the same holds
 //! for the next step. What lies on the rim of such a topology has the wrong rules; no cell ever asks for it.
 
-use std::collections::HashMap;
+use smallvec::SmallVec;
 
-use crate::mesh::sharpness::{decayed, decayed_around_vertex};
+use crate::mesh::sharpness::{decayed, decayed_around_vertex, is_sharp};
 use crate::mesh::topology::Topology;
 use crate::subdivision::masks::{Mask, edge_point, face_point, vertex_point};
 
@@ -22,7 +22,7 @@ pub struct Refinement {
 }
 
 /// A vertex of the next level: a face, edge or vertex of this one.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy)]
 enum Origin {
     Face(u32),
     Edge(u32),
@@ -49,16 +49,13 @@ fn child(topology: &Topology, face: u32, corner: u32) -> [Origin; 4] {
 /// The faces that share a vertex with any of the `faces`, which come first; each once.
 pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
     let mut all = faces.to_vec();
-    let mut seen: std::collections::HashSet<u32> = faces.iter().copied().collect();
     for &face in faces {
         for &vertex in topology.face(face) {
-            all.extend(
-                topology
-                    .vertex_faces(vertex)
-                    .iter()
-                    .map(|c| c.face)
-                    .filter(|&face| seen.insert(face)),
-            );
+            for corner in topology.vertex_faces(vertex) {
+                if !all.contains(&corner.face) {
+                    all.push(corner.face);
+                }
+            }
         }
     }
     all
@@ -66,69 +63,84 @@ pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
 
 /// Refines the given children, each a face and a corner of it, with everything that touches them.
 pub fn refine(parent: &Topology, cells: &[(u32, u32)]) -> Refinement {
+    let mut step = Step::new(parent);
+    let mut faces: Vec<[u32; 4]> = Vec::with_capacity(4 * cells.len() + 12);
+    for &(face, corner) in cells {
+        faces.push(child(parent, face, corner).map(|origin| step.number(origin)));
+    }
     let mut parents: Vec<u32> = cells.iter().map(|&(face, _)| face).collect();
     parents.dedup();
-    let chosen: Vec<[Origin; 4]> = cells
-        .iter()
-        .map(|&(face, corner)| child(parent, face, corner))
-        .collect();
-    let touched: std::collections::HashSet<Origin> = chosen.iter().flatten().copied().collect();
-    let mut faces = chosen.clone();
+    // The chosen children have numbered their own vertices: whoever has one of these touches them.
+    let touched = step.origins.len() as u32;
     for face in with_neighbours(parent, &parents) {
         for corner in 0..parent.face(face).len() as u32 {
             let child = child(parent, face, corner);
-            if child.iter().any(|origin| touched.contains(origin))
+            if child.iter().any(|&origin| step.known(origin) < touched)
                 && !cells.contains(&(face, corner))
             {
-                faces.push(child);
+                faces.push(child.map(|origin| step.number(origin)));
             }
         }
     }
-    let mut step = Step {
-        parent,
-        numbers: HashMap::new(),
-        origins: Vec::new(),
-    };
-    let faces: Vec<[u32; 4]> = faces
-        .iter()
-        .map(|face| face.map(|origin| step.number(origin)))
-        .collect();
-    let sharpness = step
-        .origins
-        .iter()
-        .map(|&origin| step.sharpness(origin))
-        .collect();
+    let origins = step.origins.iter();
     let topology = Topology::connect(
         faces.iter().map(|f| &f[..]),
-        sharpness,
+        origins
+            .clone()
+            .map(|&origin| step.sharpness(origin))
+            .collect(),
         parent.options(),
         |a, b| step.edge(a, b),
     );
-    let masks = step
-        .origins
-        .iter()
-        .map(|&origin| step.mask(origin))
-        .collect();
     Refinement {
         topology,
-        masks,
-        cells: chosen.len() as u32,
+        masks: origins.map(|&origin| step.mask(origin)).collect(),
+        cells: cells.len() as u32,
     }
 }
 
 /// Numbers the vertices of the next level as they are met.
 struct Step<'a> {
     parent: &'a Topology,
-    numbers: HashMap<Origin, u32>,
+    /// The numbers by origin: of the parent's faces, then its edges, then its vertices.
+    numbers: Vec<u32>,
     origins: Vec<Origin>,
 }
 
+/// The number of an origin that has none yet.
+const UNKNOWN: u32 = u32::MAX;
+
 impl Step<'_> {
+    fn new(parent: &Topology) -> Step<'_> {
+        let origins = parent.face_count() + parent.edge_count() + parent.vertex_count();
+        Step {
+            parent,
+            numbers: vec![UNKNOWN; origins],
+            origins: Vec::new(),
+        }
+    }
+
+    /// Where `numbers` holds an origin's number.
+    fn place(&self, origin: Origin) -> usize {
+        let (faces, edges) = (self.parent.face_count(), self.parent.edge_count());
+        match origin {
+            Origin::Face(face) => face as usize,
+            Origin::Edge(edge) => faces + edge as usize,
+            Origin::Vertex(vertex) => faces + edges + vertex as usize,
+        }
+    }
+
+    fn known(&self, origin: Origin) -> u32 {
+        self.numbers[self.place(origin)]
+    }
+
     fn number(&mut self, origin: Origin) -> u32 {
-        *self.numbers.entry(origin).or_insert_with(|| {
+        let place = self.place(origin);
+        if self.numbers[place] == UNKNOWN {
+            self.numbers[place] = self.origins.len() as u32;
             self.origins.push(origin);
-            self.origins.len() as u32 - 1
-        })
+        }
+        self.numbers[place]
     }
 
     fn sharpness(&self, origin: Origin) -> f32 {
@@ -162,8 +174,12 @@ impl Step<'_> {
     fn half(&self, edge: u32, vertex: u32) -> (f32, [f32; 2]) {
         let method = self.parent.options().creasing;
         let whole = self.parent.edge(edge);
+        let sharpness = whole.next_at(vertex);
+        if !is_sharp(sharpness) {
+            return (sharpness, [0.0; 2]);
+        }
         let around = self.parent.vertex_edges(vertex);
-        let halves: Vec<f32> = around
+        let halves: SmallVec<[f32; 8]> = around
             .iter()
             .map(|&e| self.parent.edge(e).next_at(vertex))
             .collect();
@@ -172,7 +188,6 @@ impl Step<'_> {
             .position(|&e| e == edge)
             .expect("the edge ends in this vertex");
         let near = decayed_around_vertex(method, &halves)[at];
-        let sharpness = whole.next_at(vertex);
         let far =
             decayed_around_vertex(method, &[sharpness, whole.next_at(whole.other(vertex))])[0];
         (sharpness, [near, far])

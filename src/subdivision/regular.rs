@@ -4,6 +4,8 @@
 //! section 4.1); and faces with one semi-sharp crease (Nießner et al. 2012). An infinite crease separates its two sides, so only the
 //! sector on the face's own side has to be regular.
 
+use smallvec::SmallVec;
+
 use crate::mesh::sharpness::{Rule, decayed, is_semi_sharp, rule};
 use crate::mesh::topology::Topology;
 use crate::subdivision::masks::Mask;
@@ -117,7 +119,7 @@ fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPo
     {
         return None;
     }
-    let sharp: Vec<u32> = topology.sharp_edges(own).collect();
+    let sharp: SmallVec<[u32; 8]> = topology.sharp_edges(own).collect();
     let semi_sharp = sharp
         .iter()
         .any(|&edge| is_semi_sharp(topology.edge(edge).sharpness));

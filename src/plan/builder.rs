@@ -319,7 +319,7 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
             let end = child_of_corner(*corner);
             let (mut u, mut v) = (u, v);
             for grid in grids {
-                let (us, vs) = (u.split(end % 2 == 0), v.split(end / 2 == 0));
+                let (us, vs) = (u.split(end.is_multiple_of(2)), v.split(end < 2));
                 for number in (0..4).filter(|&number| number != end) {
                     let points: Vec<u32> = (0..16)
                         .map(|i| grid[(i % 4 + number % 2) + 5 * (i / 4 + number / 2)])

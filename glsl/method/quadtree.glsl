@@ -30,17 +30,32 @@ vec3 control_point(Patch record, uint number) {
 #ifdef STAGE_CONTROL
 uint scratch_points(Patch record, uint level) { return plans[record.plan].counts[min(level, HIGHEST_LEVEL)]; }
 
-// Runs every 32nd stencil, beginning with this invocation's.
+// Adds `term` to a sum of many, and keeps what rounding takes away (Kahan 1965).
+void add_compensated(inout vec3 sum, inout vec3 lost, vec3 term) {
+    precise vec3 rest = term - lost;
+    precise vec3 next = sum + rest;
+    precise vec3 more = (next - sum) - rest;
+    sum = next;
+    lost = more;
+}
+
+// Runs every 32nd stencil, beginning with this invocation's. Rings too long for the vertex shader are also too long for a plain sum: where
+// hundreds of faces meet, the tangents of neighbours differ by less than it would lose.
 void run_stencils(Patch record, uint slot, uint count) {
     uint ring_size = plans[record.plan].ring_size;
-    uint piped = min(ring_size, CONTROL_POINTS);
-    vec3 origin = ring_size > CONTROL_POINTS ? patch_origin(record) : vec3(0.0);
+    bool piped = ring_size <= CONTROL_POINTS;
+    vec3 origin = piped ? vec3(0.0) : patch_origin(record);
     for (uint stencil = gl_InvocationID; stencil < count; stencil += CONTROL_INVOCATIONS) {
         uint weight = plans[record.plan].weights + stencil * ring_size;
         vec3 sum = vec3(0.0);
-        for (uint i = 0u; i < piped; ++i) sum += weights[weight + i] * in_point[i];
-        for (uint i = piped; i < ring_size; ++i) {
-            sum += weights[weight + i] * (control_vertex(controls[record.controls + i]) - origin);
+        vec3 lost = vec3(0.0);
+        if (piped) {
+            for (uint i = 0u; i < ring_size; ++i) sum += weights[weight + i] * in_point[i];
+        } else {
+            for (uint i = 0u; i < ring_size; ++i) {
+                vec3 point = control_vertex(controls[record.controls + i]) - origin;
+                add_compensated(sum, lost, weights[weight + i] * point);
+            }
         }
         scratch[slot + stencil] = vec4(sum, 0.0);
     }

@@ -262,10 +262,7 @@ fn irregular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Su
         .collect();
     let stencil = |number: u32| {
         let weights = &plans.weights[(header.weights + number * header.ring_size) as usize..];
-        local
-            .iter()
-            .zip(weights)
-            .fold(Vec3::ZERO, |sum, (&point, &weight)| sum + weight * point)
+        weighted_sum(&local, weights)
     };
     match walk(plans, plan, uv) {
         Leaf::Corner(corner) => {
@@ -295,6 +292,26 @@ fn irregular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Su
             }
         }
     }
+}
+
+/// The sum of weighted points, in the order and the manner of the control shader: rings of more than 32 vertices are summed with
+/// compensation (Kahan 1965), since where hundreds of faces meet, the tangents of neighbours differ by less than a plain sum would lose.
+fn weighted_sum(points: &[Vec3], weights: &[f32]) -> Vec3 {
+    let terms = points
+        .iter()
+        .zip(weights)
+        .map(|(&point, &weight)| weight * point);
+    if points.len() <= abi::CONTROL_INVOCATIONS as usize {
+        return terms.fold(Vec3::ZERO, |sum, term| sum + term);
+    }
+    let (mut sum, mut lost) = (Vec3::ZERO, Vec3::ZERO);
+    for term in terms {
+        let rest = term - lost;
+        let next = sum + rest;
+        lost = (next - sum) - rest;
+        sum = next;
+    }
+    sum
 }
 
 /// The bases in both directions; across a crease on one of the edges the crease's own. Twin of `glsl/lib/crease.glsl`.

@@ -178,7 +178,7 @@ fn long_rings_keep_the_contract() {
     let Some(gpu) = Gpu::open() else { return };
     for name in ["pole-64", "pole-360"] {
         let model = shapes::built_in(name);
-        let cuts = [cut(4.0, Spacing::Equal), cut(16.0, Spacing::FractionalEven)];
+        let cuts = [cut(4.0, Spacing::Equal), cut(64.0, Spacing::FractionalEven)];
         each_cut(&gpu, &model, &METHODS[0], &cuts, |_, prepared, frame| {
             let worst = from_truth(&model, &METHODS[0], prepared, frame, 401);
             assert_near(name, worst, 1e-6, 0.1);

@@ -204,8 +204,10 @@ impl TessellatedSurface {
             view_projection: view.clip_from_model,
             eye: view.eye,
             shading: view.shading,
-            // Not below what the tessellator would raise it to: control shaders compute the points that this level needs.
-            level: cut.level.max(cut.spacing.least()),
+            // As the CPU has it, whatever the pass: control shaders compute the points that this level needs.
+            level: cut
+                .spacing
+                .clamp(cut.level, self.prepared.passes[batch.pass].max_level),
             flags: flag(
                 cut.spacing == Spacing::FractionalEven,
                 abi::FRAME_FRACTIONAL_EVEN,

@@ -21,6 +21,13 @@ impl Spacing {
         }
     }
 
+    /// The level within what the tessellator and plans of `max_level` levels can do: from [`least`](Self::least) to 2^`max_level` and at
+    /// most 64.
+    pub fn clamp(self, level: f32, max_level: u32) -> f32 {
+        let greatest = (1u32 << max_level).min(64) as f32;
+        level.clamp(self.least(), greatest.max(self.least()))
+    }
+
     /// The least level: the tessellator raises lower ones to it.
     pub fn least(self) -> f32 {
         match self {
@@ -52,7 +59,7 @@ pub struct Levels {
 /// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
 /// fractional-even (Brainerd et al. 2016, section 7.2).
 pub fn levels(patch: &abi::Patch, level: f32, spacing: Spacing, max_level: u32) -> Levels {
-    let level = level.clamp(spacing.least(), (1u32 << max_level).min(64) as f32);
+    let level = spacing.clamp(level, max_level);
     let half = match spacing {
         Spacing::Equal => (level * 0.5).ceil(),
         Spacing::FractionalEven => 2.0 * (level * 0.25).ceil(),

@@ -6,6 +6,7 @@ use glam::Vec3;
 use hullform::gpu::{Cut, Fill};
 use hullform::mesh::Model;
 use hullform::method::{METHODS, Pass, Prepared, to_ptex};
+use hullform::plan::PlanOptions;
 use hullform::subdivision::LimitSurface;
 
 use crate::common;
@@ -159,6 +160,30 @@ fn compare(name: &str, model: &Model, prepared: &Prepared, frame: &Frame, gaps: 
             }
         }
     }
+}
+
+/// Plans that go less deep than the level asks for bound all patches alike, regular ones too.
+#[test]
+fn shallow_plans_leave_no_t_junctions() {
+    let Some(gpu) = Gpu::open() else { return };
+    let model = shapes::built_in("hull");
+    let options = PlanOptions {
+        max_level: 2,
+        ..PlanOptions::default()
+    };
+    let prepared = (METHODS[0].prepare)(&model, options).expect("sound options");
+    let cuts = SPACINGS.map(|spacing| cut(8.0, spacing));
+    let workarounds = &gpu.device.info().workarounds;
+    let capturing = capturing(&prepared, &cuts);
+    let loaded = gpu.load(&model, prepared, workarounds, capturing);
+    let mut loaded = loaded.expect("the ring holds a patch");
+    for cut in cuts {
+        let frame = loaded.capture(cut, Fill::Discard).expect("it is drawn");
+        let gaps = &mut Gaps::default();
+        compare("shallow", &model, loaded.prepared(), &frame, gaps);
+    }
+    drop(loaded);
+    gpu.finish();
 }
 
 fn mixed_meshes() -> Vec<(String, Model)> {

@@ -3,7 +3,7 @@
 //! Every `glsl/method/NAME.glsl` makes five modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
 //! `NAME.fractional-even.tese` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of their line
 //! `#include "method"`. Spacing is an execution mode, hence a module of its own. Every other stage file in `glsl/` is a
-//! module of its own, named like the file.
+//! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`.
 //!
 //! With the feature `shaderc` the modules are compiled here. Without it they are the files in `glsl/spirv`, which
 //! `scripts/update-spirv` writes and `tests/spirv.rs` holds to the sources.
@@ -116,7 +116,7 @@ impl Sources {
         for file in self.0.keys().filter(|file| !is_shell(file)) {
             if let Some(stage) = stage(file) {
                 modules.push(Module {
-                    name: file.clone(),
+                    name: file.replace('/', "."),
                     method: None,
                     stage,
                     spacing: None,
@@ -202,10 +202,11 @@ fn collect(folder: &Path, prefix: &str, files: &mut BTreeMap<String, String>) ->
     Ok(())
 }
 
-/// The stage macro of a file that is a stage: one in `glsl/` itself with a stage's extension.
+/// The stage macro of a file that is a stage: one in `glsl/` itself or in `glsl/conformance/` with a stage's extension.
 fn stage(file: &str) -> Option<&'static str> {
     let (stem, extension) = file.rsplit_once('.')?;
     let (_, stage) = STAGES.iter().find(|(known, _)| *known == extension)?;
+    let stem = stem.strip_prefix("conformance/").unwrap_or(stem);
     (!stem.contains('/')).then_some(stage)
 }
 

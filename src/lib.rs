@@ -13,6 +13,7 @@
 //! 5. [`tessellation`]: tess levels that agree on both sides of every edge.
 //! 6. `gpu` (feature `vulkan`): tables to buffers, pipelines, and draws recorded into your command buffer.
 //! 7. `host` (feature `host`): a device and an offscreen picture, for those who have none.
+//! 8. `conformance` (feature `host`): the suite of `hullform verify`, for drivers and for ourselves.
 //!
 //! Up to `tessellation` everything is plain CPU code. It is not a helper of the GPU: it is what the GPU is tested against.
 //!
@@ -65,7 +66,7 @@
 //! | feature | default | what it adds |
 //! | --- | --- | --- |
 //! | `vulkan` | through `host` | `gpu`: the layer over a borrowed Vulkan device; without it the crate is pure CPU code |
-//! | `host` | yes | `host`: instance, device choice and offscreen target |
+//! | `host` | yes | `host`: instance, device choice and offscreen target; `conformance`: the suite of `hullform verify` |
 //! | `cli` | yes | the `hullform` program |
 //! | `shaderc` | no | compile `glsl/` at build time instead of embedding the modules in `glsl/spirv` |
 //!
@@ -98,6 +99,8 @@
 //! shader.
 
 pub mod abi;
+#[cfg(feature = "host")]
+pub mod conformance;
 pub mod error;
 #[cfg(feature = "vulkan")]
 pub mod gpu;

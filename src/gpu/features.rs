@@ -16,6 +16,8 @@ pub struct OptionalFeatures {
     pub sample_rate_shading: bool,
     /// `maintenance4`, from Vulkan 1.3 or `VK_KHR_maintenance4`: shader interfaces of unequal width may be linked.
     pub maintenance4: bool,
+    /// Shaders that speak the Vulkan memory model (`vulkanMemoryModel`): only the conformance suite has such.
+    pub vulkan_memory_model: bool,
 }
 
 /// How a physical device meets what we need.
@@ -118,17 +120,22 @@ impl Support {
             optional.pipeline_statistics_query,
         );
         set(&mut core.sample_rate_shading, optional.sample_rate_shading);
+        set(
+            &mut vulkan12.vulkan_memory_model,
+            optional.vulkan_memory_model,
+        );
     }
 
     /// # Safety
     /// As [`Support::query`].
     unsafe fn query_features(&mut self, instance: &ash::Instance, physical: vk::PhysicalDevice) {
         let mut scalar = vk::PhysicalDeviceScalarBlockLayoutFeatures::default();
+        let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
         let mut maintenance4 = vk::PhysicalDeviceMaintenance4Features::default();
         let mut features = vk::PhysicalDeviceFeatures2::default();
         // Structs from beyond the device's version stay out of the chain: nobody would fill them in.
         if self.api_version >= vk::API_VERSION_1_2 {
-            features = features.push_next(&mut scalar);
+            features = features.push_next(&mut scalar).push_next(&mut model);
         }
         let core13 = self.api_version >= vk::API_VERSION_1_3;
         // SAFETY: the caller's instance and physical device.
@@ -148,6 +155,7 @@ impl Support {
             pipeline_statistics_query: core.pipeline_statistics_query != 0,
             sample_rate_shading: core.sample_rate_shading != 0,
             maintenance4: maintenance4.maintenance4 != 0,
+            vulkan_memory_model: model.vulkan_memory_model != 0,
         };
         self.maintenance4_by_extension = by_extension && self.optional.maintenance4;
     }
@@ -172,6 +180,12 @@ impl FeatureChain {
             vulkan12,
             maintenance4: support.optional.maintenance4.then_some(maintenance4),
         }
+    }
+
+    /// Switches `robustBufferAccess` on as well, which every device has: reads and writes beyond a buffer's end do no harm then.
+    pub fn with_robust_buffer_access(mut self) -> FeatureChain {
+        self.core.features.robust_buffer_access = vk::TRUE;
+        self
     }
 
     /// Chains the structs to `info`.

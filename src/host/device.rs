@@ -48,12 +48,24 @@ impl Device {
     /// # Errors
     /// [`Error::NoDevice`] says what each device lacks.
     pub fn open(instance: &Instance, selector: Option<&str>) -> Result<Device> {
+        Device::open_with(instance, selector, false)
+    }
+
+    /// As [`Device::open`], with `robustBufferAccess`: shaders that read or write beyond a buffer's end do no harm. Slower on some devices.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn open_robust(instance: &Instance, selector: Option<&str>) -> Result<Device> {
+        Device::open_with(instance, selector, true)
+    }
+
+    fn open_with(instance: &Instance, selector: Option<&str>, robust: bool) -> Result<Device> {
         let info = choose(&devices(instance)?, selector)?;
         tracing::info!(device = info.name, driver = info.driver.info, "opened");
         let family = info.support.graphics_family;
         let family = family.expect("a suitable device has a graphics queue");
         let logical = Logical {
-            raw: create(instance, &info, family)?,
+            raw: create(instance, &info, family, robust)?,
             instance: instance.clone(),
         };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -222,7 +234,12 @@ impl Drop for OneShot<'_> {
     }
 }
 
-fn create(instance: &Instance, info: &DeviceInfo, family: u32) -> Result<ash::Device> {
+fn create(
+    instance: &Instance,
+    info: &DeviceInfo,
+    family: u32,
+    robust: bool,
+) -> Result<ash::Device> {
     let mut extensions = info.support.extensions();
     // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
     let subset = khr::portability_subset::NAME;
@@ -238,6 +255,9 @@ fn create(instance: &Instance, info: &DeviceInfo, family: u32) -> Result<ash::De
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions);
     let mut features = FeatureChain::new(&info.support);
+    if robust {
+        features = features.with_robust_buffer_access();
+    }
     // SAFETY: `choose` returns devices that lack nothing; `create` names the extensions and has no features yet.
     let create = unsafe { features.chain(create) };
     // SAFETY: the device was listed by this live instance; all that `create` points to lives through the call.

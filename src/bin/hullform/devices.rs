@@ -29,7 +29,7 @@ pub fn run(global: &Global) -> Result<()> {
 }
 
 fn report(devices: &[DeviceInfo], global: &Global) -> String {
-    if global.json {
+    if global.prints_json() {
         let devices: Vec<_> = devices
             .iter()
             .map(|device| as_json(device, global))

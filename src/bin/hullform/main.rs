@@ -11,6 +11,7 @@ mod plan;
 mod progress;
 mod render;
 mod tessellate;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use hullform::{Error, Result};
@@ -40,6 +41,8 @@ enum Command {
     Plan(plan::Arguments),
     /// List the Vulkan devices and how they suit us
     Devices,
+    /// Find out whether a driver keeps the rules that we rely on, and whether we keep our own
+    Verify(verify::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Command::Tessellate(arguments) => tessellate::run(arguments, global),
         Command::Plan(arguments) => plan::run(arguments, global),
         Command::Devices => devices::run(global),
+        Command::Verify(arguments) => verify::run(arguments, global),
     };
     exit_code(result)
 }

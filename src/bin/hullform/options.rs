@@ -1,6 +1,7 @@
 //! Options that several subcommands share, and how their values are read.
 
 use clap::{Args, ValueEnum};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Options of every subcommand.
@@ -16,14 +17,50 @@ pub struct Global {
     #[arg(long, global = true)]
     pub no_workarounds: bool,
     /// Print results as JSON
-    #[arg(long, global = true)]
-    pub json: bool,
+    // `verify` has an option of the same id that takes a file, hence the type.
+    #[arg(long, id = "json", global = true, num_args = 0..=1, require_equals = true, default_missing_value = "-", value_name = "", hide_possible_values = true, value_parser = Json::printed)]
+    json: Option<Json>,
     /// Scratch memory that control shaders share: bytes, or with KiB or MiB
     #[arg(long, global = true, value_name = "N", default_value = "1MiB", value_parser = bytes)]
     pub ring_bytes: u64,
     /// Who gives patches their slots in that memory
     #[arg(long, global = true, value_name = "WHO", default_value = "counter")]
     pub slots: Slots,
+}
+
+impl Global {
+    /// Whether results are printed as JSON.
+    pub fn prints_json(&self) -> bool {
+        self.json == Some(Json::Print)
+    }
+}
+
+/// Where results go as JSON.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Json {
+    /// To standard output.
+    Print,
+    /// To a file.
+    File(PathBuf),
+}
+
+impl Json {
+    /// `--json` of every subcommand.
+    fn printed(text: &str) -> Result<Json, &'static str> {
+        match text {
+            "-" => Ok(Json::Print),
+            _ => Err("only `verify` writes JSON into a file"),
+        }
+    }
+
+    /// `--json [FILE]` of `verify`.
+    pub fn anywhere(text: &str) -> Result<Json, &'static str> {
+        match text {
+            "-" => Ok(Json::Print),
+            "" => Err("expected the name of a file"),
+            file => Ok(Json::File(file.into())),
+        }
+    }
 }
 
 /// Who gives patches their slots in the scratch ring.
@@ -33,6 +70,16 @@ pub enum Slots {
     Counter,
     /// The host, by summing up beforehand
     Host,
+}
+
+impl Slots {
+    /// As the command line has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Slots::Counter => "counter",
+            Slots::Host => "host",
+        }
+    }
 }
 
 /// Where the vertices of a subdivided edge lie: Vulkan's spacing modes that keep them apart.

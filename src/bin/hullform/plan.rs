@@ -27,7 +27,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let mesh = model::load(Some(&arguments.model))?;
     let facts = progress::during("planning", |_| facts(&mesh, arguments))?;
-    if global.json {
+    if global.prints_json() {
         print(&format!("{:#}", Value::Object(facts)))
     } else {
         print(&as_text(&facts))

@@ -154,7 +154,7 @@ fn draw_picture(
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
-    if global.json {
+    if global.prints_json() {
         print(&format!("{stats:#}"))
     } else {
         tracing::info!("wrote {}", arguments.output.display());

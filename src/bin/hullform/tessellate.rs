@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
 fn report(arguments: &Arguments, global: &Global, surface: &Surface) -> Result<()> {
     let (points, triangles) = (surface.points.len(), surface.triangles.len());
     let path = arguments.output.display();
-    if global.json {
+    if global.prints_json() {
         let report =
             json!({ "output": path.to_string(), "points": points, "triangles": triangles });
         print(&format!("{report:#}"))

@@ -1,6 +1,7 @@
 //! Files that are there completely or not at all.
 
 pub mod csv;
+pub mod junit;
 pub mod obj;
 mod pending;
 pub mod picture;

@@ -1,0 +1,11 @@
+#version 460
+
+// The number of the patch, plus one, as a colour of 24 bits: black is the background's.
+
+layout(location = 0) flat in uint in_patch;
+layout(location = 0) out vec4 out_colour;
+
+void main() {
+    uint number = in_patch + 1u;
+    out_colour = vec4(number & 255u, number >> 8u & 255u, number >> 16u & 255u, 255u) / 255.0;
+}

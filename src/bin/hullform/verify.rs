@@ -1,0 +1,415 @@
+//! `hullform verify`: the conformance suite.
+
+use crate::drawing::Drawing;
+use crate::options::{Global, Json};
+use crate::output::{Pending, junit};
+use crate::{model, print};
+use clap::Args;
+use hullform::conformance::{
+    Case, CaseResult, Context, Expectations, Fault, Registry, Report, RunOptions, Runner, Settings,
+    work,
+};
+use hullform::gpu::Driver;
+use hullform::host::{Device, DeviceInfo, Instance};
+use hullform::mesh::Model;
+use hullform::{Error, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
+use std::io::{self, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Options of `verify`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Meshes of your own: OBJ files, or builtin:NAME. Only the cases that concern meshes run, on these
+    #[arg(value_name = "MODEL")]
+    models: Vec<String>,
+    /// Cases to run: a pattern such as 'scale.*' or '*.quads-*'
+    #[arg(long, value_name = "GLOB")]
+    filter: Option<String>,
+    /// List the cases instead of running them
+    #[arg(long)]
+    list: bool,
+    /// Write results as JSON into a file; without FILE print them
+    #[arg(long, id = "json", value_name = "FILE", num_args = 0..=1, default_missing_value = "-", value_parser = Json::anywhere)]
+    json: Option<Json>,
+    /// Write results as JUnit's XML
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Write results as lines of name,Status,seconds
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// What the driver is known to do wrong [default: the list that is shipped for it, if any]
+    #[arg(long, value_name = "FILE")]
+    expectations: Option<PathBuf>,
+    /// Run each case so often; different results are a flake
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+    /// Where random numbers begin
+    #[arg(long, value_name = "S", default_value = "0")]
+    seed: u64,
+    /// Worker processes at a time [default: one a core, four at most]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    jobs: Option<u32>,
+    /// Time limit of each case in seconds, instead of its own
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    time_limit: Option<Duration>,
+    /// A deliberate fault, for tests of the suite: KIND:GLOB
+    #[arg(long, hide = true)]
+    fault: Option<Fault>,
+    /// Be a worker: cases come on standard input
+    #[arg(long, hide = true)]
+    worker: bool,
+}
+
+fn seconds(text: &str) -> std::result::Result<Duration, &'static str> {
+    let number: Option<f64> = text.parse().ok();
+    match number {
+        Some(number) if number > 0.0 && number <= 1e6 => Ok(Duration::from_secs_f64(number)),
+        _ => Err("expected a number of seconds"),
+    }
+}
+
+/// Lists the cases, runs them, or is one of the workers that do.
+pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    let names = model_names(&arguments.models);
+    let mut registry = match names.as_slice() {
+        [] => Registry::suite(),
+        names => Registry::of_models(names.iter().map(String::as_str)),
+    };
+    if arguments.worker {
+        return be_worker(arguments, global, &names, &registry);
+    }
+    if let Some(filter) = &arguments.filter {
+        registry.filter(filter)?;
+    }
+    if arguments.list {
+        return list(&registry.cases, global);
+    }
+    verify(arguments, global, &registry.cases)
+}
+
+/// Names for the meshes: those of their files in small letters, each different.
+fn model_names(models: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for model in models {
+        let stem = model.strip_prefix("builtin:").map_or_else(
+            || {
+                Path::new(model)
+                    .file_stem()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+            },
+            Into::into,
+        );
+        let plain = |c: char| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '_'
+            }
+        };
+        let stem: String = stem.chars().map(plain).collect();
+        let numbered = (2..).map(|number| format!("{stem}_{number}"));
+        let mut candidates = std::iter::once(stem.clone()).chain(numbered);
+        let name = candidates.find(|name| !names.contains(name));
+        names.extend(name);
+    }
+    names
+}
+
+fn be_worker(
+    arguments: &Arguments,
+    global: &Global,
+    names: &[String],
+    registry: &Registry,
+) -> Result<()> {
+    let models = names.iter().zip(&arguments.models).map(|(name, path)| {
+        let mesh = model::load(Some(path))?;
+        Ok((name.clone(), Model::new(mesh)))
+    });
+    let settings = Settings {
+        device: global.device.clone(),
+        validation: global.validation,
+        workarounds: !global.no_workarounds,
+        ring_bytes: global.ring_bytes,
+        slots: Drawing::slots(global.slots),
+        seed: arguments.seed,
+        fault: arguments.fault.clone(),
+    };
+    let context = Context::new(settings, models.collect::<Result<_>>()?)?;
+    let worked = work(
+        &context,
+        registry,
+        BufReader::new(io::stdin()),
+        io::stdout(),
+    );
+    worked.map_err(|source| Error::File {
+        path: "the runner's pipe".into(),
+        source,
+    })
+}
+
+fn list(cases: &[Case], global: &Global) -> Result<()> {
+    if global.prints_json() {
+        let cases = cases.iter().map(|case| {
+            json!({
+                "name": case.name,
+                "rule": case.rule,
+                "source": case.source,
+                "limit_seconds": case.limit.as_secs_f64(),
+            })
+        });
+        let cases: Vec<Value> = cases.collect();
+        return print(&format!("{:#}", json!({ "cases": cases })));
+    }
+    let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+    print(&names.join("\n"))
+}
+
+/// The files to write, opened before the work begins.
+struct Files {
+    json: Option<Pending>,
+    junit: Option<Pending>,
+    csv: Option<Pending>,
+}
+
+impl Files {
+    fn create(arguments: &Arguments) -> Result<Files> {
+        let pending = |path: Option<&PathBuf>| path.map(|path| Pending::create(path)).transpose();
+        let json = match &arguments.json {
+            Some(Json::File(path)) => Some(path),
+            _ => None,
+        };
+        Ok(Files {
+            json: pending(json)?,
+            junit: pending(arguments.junit.as_ref())?,
+            csv: pending(arguments.csv.as_ref())?,
+        })
+    }
+
+    fn write(self, report: &Report, json: &Value) -> Result<()> {
+        if let Some(file) = self.csv {
+            file.write(|out| out.write_all(report.csv().as_bytes()))?;
+        }
+        if let Some(file) = self.junit {
+            file.write(|out| junit::write(out, report))?;
+        }
+        if let Some(file) = self.json {
+            file.write(|out| writeln!(out, "{json:#}"))?;
+        }
+        Ok(())
+    }
+}
+
+fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> {
+    for model in &arguments.models {
+        model::load(Some(model))?;
+    }
+    let files = Files::create(arguments)?;
+    let device = chosen_device(global)?;
+    let expectations = expectations(arguments, &device.driver)?;
+    let worker = worker(arguments, global)?;
+    let runner = Runner {
+        worker: &|| command(&worker),
+        expectations: &expectations,
+        options: RunOptions {
+            repeat: arguments.repeat,
+            jobs: jobs(arguments),
+            limit: arguments.time_limit,
+        },
+    };
+    let started = Instant::now();
+    let bar = progress(cases.len());
+    let report = runner.run(cases, |result| show(&bar, result));
+    bar.finish_and_clear();
+    let report = report.map_err(|source| Error::File {
+        path: worker[0].clone().into(),
+        source,
+    })?;
+    let seconds = started.elapsed().as_secs_f64();
+    let json = as_json(arguments, &device, &expectations, cases, &report, seconds);
+    files.write(&report, &json)?;
+    if global.prints_json() {
+        print(&format!("{json:#}"))?;
+    } else {
+        print(&summary(&device, &expectations, &report, seconds))?;
+    }
+    match report.unexpected() {
+        0 => Ok(()),
+        1 => Err(Error::Refused("1 unexpected result".into())),
+        count => Err(Error::Refused(format!("{count} unexpected results"))),
+    }
+}
+
+/// The device that workers will open; closed again at once.
+fn chosen_device(global: &Global) -> Result<DeviceInfo> {
+    let instance = Instance::new(global.validation)?;
+    Ok(Device::open(&instance, global.device.as_deref())?
+        .info()
+        .clone())
+}
+
+fn expectations(arguments: &Arguments, driver: &Driver) -> Result<Expectations> {
+    let Some(path) = &arguments.expectations else {
+        return Ok(Expectations::of(driver));
+    };
+    let text = std::fs::read_to_string(path).map_err(|source| Error::File {
+        path: path.clone(),
+        source,
+    })?;
+    Expectations::parse(&path.display().to_string(), &text)
+}
+
+fn jobs(arguments: &Arguments) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+    arguments.jobs.map_or(cores.min(4), |jobs| jobs as usize)
+}
+
+/// The command line of a worker.
+fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<String>> {
+    let program = std::env::current_exe().map_err(|source| Error::File {
+        path: "this program".into(),
+        source,
+    })?;
+    let mut words: Vec<String> = vec![program.display().to_string(), "verify".into()];
+    words.push("--worker".into());
+    words.push(format!("--seed={}", arguments.seed));
+    words.push(format!("--ring-bytes={}", global.ring_bytes));
+    words.push(format!("--slots={}", global.slots.name()));
+    words.extend(
+        global
+            .device
+            .iter()
+            .map(|device| format!("--device={device}")),
+    );
+    words.extend(global.validation.then(|| "--validation".into()));
+    words.extend(global.no_workarounds.then(|| "--no-workarounds".into()));
+    words.extend(
+        arguments
+            .fault
+            .iter()
+            .map(|fault| format!("--fault={fault}")),
+    );
+    words.push("--".into());
+    words.extend(arguments.models.iter().cloned());
+    Ok(words)
+}
+
+fn command(words: &[String]) -> Command {
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]);
+    command
+}
+
+fn progress(cases: usize) -> ProgressBar {
+    let bar = ProgressBar::new(cases as u64);
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {eta} {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+/// A line for each unexpected result, on stderr.
+fn show(bar: &ProgressBar, result: &CaseResult) {
+    bar.inc(1);
+    bar.set_message(result.group().to_owned());
+    if !result.status.is_expected() {
+        // `println` would say nothing where stderr is no terminal.
+        bar.suspend(|| eprint_line(&result.line()));
+    }
+}
+
+fn eprint_line(line: &str) {
+    use io::Write;
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+fn summary(
+    device: &DeviceInfo,
+    expectations: &Expectations,
+    report: &Report,
+    seconds: f64,
+) -> String {
+    let mut lines = vec![format!("{}, {}", device.name, device.driver.info)];
+    if !expectations.name.is_empty() {
+        lines.push(format!("expectations: {}", expectations.name));
+    }
+    for group in report.groups() {
+        let own = report.results.iter();
+        let own = own.filter(|result| result.group() == group).cloned();
+        let own = Report {
+            results: own.collect(),
+        };
+        lines.push(format!("{group:14} {}", own.counts()));
+    }
+    let count = report.results.len();
+    lines.push(format!(
+        "{count} cases in {seconds:.0} s: {}",
+        report.counts()
+    ));
+    lines.join("\n")
+}
+
+fn as_json(
+    arguments: &Arguments,
+    device: &DeviceInfo,
+    expectations: &Expectations,
+    cases: &[Case],
+    report: &Report,
+    seconds: f64,
+) -> Value {
+    let results = report.results.iter().zip(cases).map(|(result, case)| {
+        json!({
+            "name": result.name,
+            "status": result.status.to_string(),
+            "found": result.found.to_string(),
+            "rule": case.rule,
+            "source": case.source,
+            "measured": result.measured,
+            "reason": result.reason,
+            "seconds": result.seconds,
+        })
+    });
+    json!({
+        "device": device.name,
+        "driver": {
+            "id": device.driver.id.as_raw(),
+            "name": device.driver.name,
+            "info": device.driver.info,
+            "version": device.driver.version.to_string(),
+        },
+        "expectations": (!expectations.name.is_empty()).then_some(&expectations.name),
+        "seed": arguments.seed,
+        "repeat": arguments.repeat,
+        "seconds": seconds,
+        "unexpected": report.unexpected(),
+        "results": results.collect::<Vec<_>>(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_meshes_are_plain_and_different() {
+        let models = [
+            "a/Ship.obj",
+            "b/ship.obj",
+            "builtin:cubes-2x1x1",
+            "my car.obj",
+        ];
+        let names = model_names(&models.map(String::from));
+        assert_eq!(names, ["ship", "ship_2", "cubes_2x1x1", "my_car"]);
+    }
+
+    #[test]
+    fn limits_are_seconds() {
+        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+        for wrong in ["0", "-1", "NaN", "inf", "x"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! What the suite found in drivers: a minimal case, the cause as far as public sources tell, and a text to file upstream.
+
+pub mod vertices_per_batch {
+    #![doc = include_str!("bugs/vertices_per_batch.md")]
+}
+
+pub mod primitive_id {
+    #![doc = include_str!("bugs/primitive_id.md")]
+}

@@ -1,0 +1,447 @@
+//! Our surfaces on the device, and every vertex that comes of them.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use ash::vk;
+
+use crate::abi::{self, Captured};
+use crate::conformance::Context;
+use crate::error::{Error, Result};
+use crate::gpu::{
+    Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target, TessellatedSurface,
+    View, Workaround, ring,
+};
+use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
+use crate::mesh::Model;
+use crate::method::{Prepared, method};
+use crate::plan::PlanOptions;
+use crate::tessellation::Spacing;
+
+/// The side of the picture that surfaces are drawn into.
+const SIDE: u32 = 64;
+
+/// The most vertices that are captured in one submission: 36 MB.
+const MOST_CAPTURED: u32 = 1_000_000;
+
+/// What pipelines depend on: the shaders of the passes, spacing, and what becomes of the triangles.
+type PipelineKey = (Vec<&'static str>, Spacing, bool);
+
+/// A device with what surfaces share, kept from case to case: pipelines take long to build.
+pub struct Bench {
+    device: Device,
+    layout: Option<Layout>,
+    target: OffscreenTarget,
+    pipelines: RefCell<HashMap<PipelineKey, Pipelines>>,
+}
+
+impl Bench {
+    /// What surfaces need on a device.
+    pub fn new(device: &Device) -> Result<Bench> {
+        let target = OffscreenTarget::with_encoding(device, SIDE, SIDE, 1, Encoding::Unorm)?;
+        // SAFETY: the device is live.
+        let layout = unsafe { Layout::new(device.raw()) }?;
+        Ok(Bench {
+            device: device.clone(),
+            layout: Some(layout),
+            target,
+            pipelines: RefCell::default(),
+        })
+    }
+
+    fn layout(&self) -> &Layout {
+        self.layout.as_ref().expect("there until it is dropped")
+    }
+
+    /// Brings a prepared model to the device.
+    pub fn load(
+        &self,
+        model: &Model,
+        prepared: Prepared,
+        workarounds: &[&'static Workaround],
+        options: SurfaceOptions,
+    ) -> Result<Loaded<'_>> {
+        let device = self.device.raw();
+        let layout = self.layout();
+        // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
+        let surface = unsafe {
+            let allocator = &mut self.device.allocator();
+            TessellatedSurface::new(
+                device,
+                allocator,
+                layout,
+                model,
+                prepared,
+                workarounds,
+                options,
+            )
+        };
+        let mut loaded = Loaded {
+            bench: self,
+            options,
+            reach: reach(model),
+            surface: Some(surface?),
+        };
+        self.device.submit(|cmd| {
+            // SAFETY: recording on the device that made the surface, outside of a render pass.
+            unsafe { loaded.surface().cmd_upload(device, cmd) };
+            Ok(())
+        })?;
+        let surface = loaded.surface.as_mut().expect("it was just made");
+        // SAFETY: the upload has been waited for.
+        unsafe { surface.finish_upload(device, &mut self.device.allocator()) };
+        Ok(loaded)
+    }
+
+    /// Lets `use_them` use the pipelines for a prepared model, which are built once.
+    fn with_pipelines<T>(
+        &self,
+        prepared: &Prepared,
+        spacing: Spacing,
+        fill: Fill,
+        use_them: impl FnOnce(&Pipelines) -> Result<T>,
+    ) -> Result<T> {
+        let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
+        let key = (shaders, spacing, fill == Fill::Discard);
+        let mut all = self.pipelines.borrow_mut();
+        if !all.contains_key(&key) {
+            let built = self.build(prepared, spacing, fill, vk::PipelineCache::null())?;
+            all.insert(key.clone(), built);
+        }
+        use_them(&all[&key])
+    }
+
+    /// Builds pipelines with a cache.
+    fn build(
+        &self,
+        prepared: &Prepared,
+        spacing: Spacing,
+        fill: Fill,
+        cache: vk::PipelineCache,
+    ) -> Result<Pipelines> {
+        let target = Target {
+            render_pass: self.target.render_pass(),
+            samples: self.target.samples(),
+        };
+        let (device, layout) = (self.device.raw(), self.layout());
+        // SAFETY: all of one live device.
+        unsafe { Pipelines::new(device, layout, cache, prepared, target, spacing, fill) }
+    }
+
+    /// Forgets all pipelines, builds new ones for a prepared model with a cache that holds `data`, and returns what the cache holds then.
+    pub fn rebuild(
+        &self,
+        prepared: &Prepared,
+        spacing: Spacing,
+        fill: Fill,
+        data: &[u8],
+    ) -> Result<Vec<u8>> {
+        self.forget();
+        let device = self.device.raw();
+        let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
+        // SAFETY: the device is live; the data are empty or what this device gave.
+        let cache = unsafe { device.create_pipeline_cache(&info, None) }
+            .map_err(crate::gpu::failed("vkCreatePipelineCache"))?;
+        let built = self.build(prepared, spacing, fill, cache);
+        // SAFETY: the cache is ours, and the pipelines do not need it any more.
+        let held = unsafe {
+            let held = device.get_pipeline_cache_data(cache);
+            device.destroy_pipeline_cache(cache, None);
+            held.map_err(crate::gpu::failed("vkGetPipelineCacheData"))
+        };
+        let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
+        let key = (shaders, spacing, fill == Fill::Discard);
+        self.pipelines.borrow_mut().insert(key, built?);
+        held
+    }
+
+    fn forget(&self) {
+        for (_, pipelines) in self.pipelines.borrow_mut().drain() {
+            // SAFETY: every submission has been waited for.
+            unsafe { pipelines.destroy(self.device.raw()) };
+        }
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        if self.device.is_hung() {
+            return;
+        }
+        self.forget();
+        if let Some(layout) = self.layout.take() {
+            // SAFETY: every submission has been waited for.
+            unsafe { layout.destroy(self.device.raw()) };
+        }
+    }
+}
+
+/// Half of what a picture must show, so that no triangle is clipped: limits and linear faces stay within the control points' hull.
+fn reach(model: &Model) -> f32 {
+    let positions = model.positions();
+    let farthest = positions.iter().map(|p| p.abs().max_element());
+    farthest.fold(1e-30, f32::max)
+}
+
+/// A model on the device.
+pub struct Loaded<'a> {
+    bench: &'a Bench,
+    options: SurfaceOptions,
+    reach: f32,
+    surface: Option<TessellatedSurface>,
+}
+
+/// What a submission, or one a pass, gave.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    /// Captured vertices, a list a pass; each by patch, v and u, once.
+    pub passes: Vec<Vec<Captured>>,
+    /// What the control shaders counted.
+    pub counters: Counters,
+    /// Control shader patches, evaluation shader invocations, clipping primitives; where the device counts them.
+    pub statistics: Option<[u64; 3]>,
+    /// Vertices that came more than once, with different bits.
+    pub differing: usize,
+}
+
+impl Frame {
+    /// Everything that was captured, as words to compare.
+    pub fn bits(&self) -> Vec<[u32; 9]> {
+        self.passes.iter().flatten().map(bits).collect()
+    }
+}
+
+impl Loaded<'_> {
+    /// The surface.
+    pub fn surface(&self) -> &TessellatedSurface {
+        self.surface.as_ref().expect("there from load to drop")
+    }
+
+    /// What was prepared.
+    pub fn prepared(&self) -> &Prepared {
+        self.surface().prepared()
+    }
+
+    /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
+    pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
+        let batches = self.surface().batches(cut)?;
+        let surface = self.surface.as_mut().expect("there from load to drop");
+        surface.write_slots(cut, &batches);
+        let mut all = Frame {
+            passes: vec![Vec::new(); self.prepared().passes.len()],
+            ..Default::default()
+        };
+        for batches in self.submissions(&batches) {
+            let mut frame = self.draw(cut, fill, batches)?;
+            all.passes[batches[0].pass].append(&mut frame.passes[0]);
+            all.counters.overflows += frame.counters.overflows;
+            all.counters.points = all.counters.points.wrapping_add(frame.counters.points);
+            all.differing += frame.differing;
+            all.statistics = match (all.statistics, frame.statistics) {
+                (Some(a), Some(b)) => Some(std::array::from_fn(|i| a[i] + b[i])),
+                (a, b) => a.or(b),
+            };
+        }
+        Ok(all)
+    }
+
+    /// Batches of one pass in a row, not too many for the capture.
+    fn submissions<'b>(&self, batches: &'b [Batch]) -> Vec<&'b [Batch]> {
+        let room = self.options.capture_vertices / 2;
+        let mut submissions = Vec::new();
+        let (mut start, mut vertices) = (0, 0);
+        for (number, batch) in batches.iter().enumerate() {
+            let other = batch.pass != batches[start].pass;
+            if number > start && (other || vertices + batch.vertices > room) {
+                submissions.push(&batches[start..number]);
+                (start, vertices) = (number, 0);
+            }
+            vertices += batch.vertices;
+        }
+        if !batches.is_empty() {
+            submissions.push(&batches[start..]);
+        }
+        submissions
+    }
+
+    /// Draws batches in one submission. All that is captured counts as one pass's.
+    fn draw(&self, cut: Cut, fill: Fill, batches: &[Batch]) -> Result<Frame> {
+        let Bench { device, target, .. } = self.bench;
+        let counts = device.info().support.optional.pipeline_statistics_query;
+        let query = counts.then(|| StatisticsQuery::new(device)).transpose()?;
+        let (raw, prepared) = (device.raw(), self.prepared());
+        self.bench
+            .with_pipelines(prepared, cut.spacing, fill, |pipelines| {
+                // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+                device.submit(|cmd| unsafe {
+                    self.surface().cmd_prepare(raw, cmd);
+                    if let Some(query) = &query {
+                        query.cmd_reset(cmd);
+                    }
+                    target.begin(cmd, [0.0; 4]);
+                    if let Some(query) = &query {
+                        query.cmd_begin(cmd);
+                    }
+                    self.cmd_draws(cmd, pipelines, cut, batches);
+                    if let Some(query) = &query {
+                        query.cmd_end(cmd);
+                    }
+                    target.end(cmd);
+                    self.surface().cmd_read_back(raw, cmd);
+                    Ok(())
+                })
+            })?;
+        let (captured, differing) = self.captured()?;
+        Ok(Frame {
+            passes: vec![captured],
+            counters: self.surface().counters(),
+            statistics: query.map(|query| query.read()).transpose()?,
+            differing,
+        })
+    }
+
+    /// # Safety
+    /// As [`TessellatedSurface::cmd_draw`].
+    unsafe fn cmd_draws(
+        &self,
+        cmd: vk::CommandBuffer,
+        pipelines: &Pipelines,
+        cut: Cut,
+        batches: &[Batch],
+    ) {
+        let (device, layout) = (self.bench.device.raw(), self.bench.layout());
+        for (number, batch) in batches.iter().enumerate() {
+            // SAFETY: this function's contract; the target's pass allows the barrier. The first batch of a submission may be one that would
+            // not wait; after another one it must.
+            unsafe {
+                if number > 0 && batch.ring_batch == 0 {
+                    ring::cmd_ring_barrier(device, cmd);
+                }
+                self.surface()
+                    .cmd_draw(device, cmd, layout, pipelines, &self.view(), cut, batch);
+            }
+        }
+    }
+
+    /// From the side, everything within the picture and its depth.
+    fn view(&self) -> View {
+        let scale = 0.99 / self.reach;
+        View {
+            clip_from_model: [
+                [scale, 0.0, 0.0, 0.0],
+                [0.0, -scale, 0.0, 0.0],
+                [0.0, 0.0, -0.5 * scale, 0.0],
+                [0.0, 0.0, 0.5, 1.0],
+            ],
+            eye: [0.0, 0.0, 10.0 * self.reach],
+            shading: abi::SHADING_PATCH,
+        }
+    }
+
+    /// The captured vertices in order, each once, and how many came again with other bits: an evaluation shader may run more than once
+    /// a vertex.
+    fn captured(&self) -> Result<(Vec<Captured>, usize)> {
+        let mut vertices = self.surface().captured().to_vec();
+        let room = self.options.capture_vertices as usize;
+        if room > 0 && vertices.len() >= room {
+            return Err(Error::Refused(format!(
+                "more than {room} vertices came: the device runs evaluation shaders far too often"
+            )));
+        }
+        vertices.sort_unstable_by_key(key);
+        let mut differing = 0;
+        vertices.dedup_by(|a, b| {
+            let same = key(a) == key(b);
+            differing += usize::from(same && bits(a) != bits(b));
+            same
+        });
+        Ok((vertices, differing))
+    }
+}
+
+impl Drop for Loaded<'_> {
+    fn drop(&mut self) {
+        let device = &self.bench.device;
+        // A queue that hangs may still use everything.
+        if let Some(surface) = self.surface.take().filter(|_| !device.is_hung()) {
+            // SAFETY: every submission has been waited for.
+            unsafe { surface.destroy(device.raw(), &mut device.allocator()) };
+        }
+    }
+}
+
+fn key(vertex: &Captured) -> (u32, u32, u32) {
+    let [u, v] = vertex.uv.map(f32::to_bits);
+    (vertex.patch_number, v, u)
+}
+
+/// Everything about a vertex, for comparisons without tolerance.
+pub fn bits(vertex: &Captured) -> [u32; 9] {
+    bytemuck::cast(*vertex)
+}
+
+/// A cut.
+pub fn cut(level: f32, spacing: Spacing) -> Cut {
+    Cut { level, spacing }
+}
+
+/// Both spacings that our surfaces have.
+pub const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
+
+/// A spacing's name as case names have it.
+pub fn spacing_name(spacing: Spacing) -> &'static str {
+    match spacing {
+        Spacing::Equal => "equal",
+        Spacing::FractionalEven => "fractional_even",
+    }
+}
+
+/// A model made ready by the method of a name.
+pub fn prepare(model: &Model, name: &str) -> Result<Prepared> {
+    (method(name)?.prepare)(model, PlanOptions::default())
+}
+
+/// A sum over all patches of all passes.
+pub fn over_patches(prepared: &Prepared, value: impl Fn(usize, usize) -> u32) -> u32 {
+    let passes = prepared.passes.iter().enumerate();
+    passes
+        .flat_map(|(number, pass)| (0..pass.patches.len()).map(move |patch| (number, patch)))
+        .map(|(pass, patch)| value(pass, patch))
+        .sum()
+}
+
+/// The vertices that the tessellator makes of everything.
+pub fn vertices(prepared: &Prepared, cut: Cut) -> u32 {
+    over_patches(prepared, |pass, patch| {
+        cut.vertices(&prepared.passes[pass], patch)
+    })
+}
+
+/// Options for capturing everything at a cut, with room for vertices that come several times.
+pub fn capturing(context: &Context, prepared: &Prepared, cut: Cut) -> SurfaceOptions {
+    SurfaceOptions {
+        ring_bytes: context.settings.ring_bytes,
+        slots: context.settings.slots,
+        capture_vertices: vertices(prepared, cut)
+            .saturating_mul(4)
+            .clamp(1 << 14, MOST_CAPTURED),
+        greatest_level: cut.level.max(1.0),
+        ..Default::default()
+    }
+}
+
+/// Prepares a model by a method, draws it at a cut with the context's settings, and captures everything.
+pub fn captured(
+    context: &Context,
+    model: &Model,
+    prepared: Prepared,
+    cut: Cut,
+    fill: Fill,
+) -> Result<Frame> {
+    let options = capturing(context, &prepared, cut);
+    let workarounds = context.workarounds()?;
+    let mut loaded = context
+        .bench()?
+        .load(model, prepared, &workarounds, options)?;
+    loaded.capture(cut, fill)
+}

@@ -1,0 +1,243 @@
+//! A case: a rule, where it stands, and the code that finds out whether it holds.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::Duration;
+
+use crate::conformance::Context;
+use crate::error::{Error, Result};
+
+/// How a case ended, in the words of deqp-runner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Status {
+    /// The rule holds.
+    Pass,
+    /// It does not.
+    Fail,
+    /// The device lacks what the case needs.
+    Skip,
+    /// The process ended in the middle of the case.
+    Crash,
+    /// Repetitions ended differently.
+    Flake,
+    /// Allowed, but not what one would wish.
+    Warn,
+    /// The case took longer than its limit.
+    Timeout,
+    /// It ended badly, as the list for this driver says.
+    ExpectedFail,
+    /// It passed although the list for this driver says otherwise: the list is out of date.
+    UnexpectedImprovement,
+}
+
+impl Status {
+    /// Every status.
+    pub const ALL: [Status; 9] = [
+        Status::Pass,
+        Status::Fail,
+        Status::Skip,
+        Status::Crash,
+        Status::Flake,
+        Status::Warn,
+        Status::Timeout,
+        Status::ExpectedFail,
+        Status::UnexpectedImprovement,
+    ];
+
+    /// Whether nothing is wrong: a driver may lack features, but not have faults that nobody knows.
+    pub fn is_expected(self) -> bool {
+        matches!(
+            self,
+            Status::Pass | Status::Skip | Status::Warn | Status::ExpectedFail
+        )
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The names are the words.
+        write!(f, "{self:?}")
+    }
+}
+
+impl FromStr for Status {
+    type Err = Error;
+
+    fn from_str(word: &str) -> Result<Status> {
+        let found = Status::ALL.iter().find(|status| status.to_string() == word);
+        found.copied().ok_or_else(|| Error::Option {
+            option: "status",
+            problem: format!("there is no status '{word}'"),
+            remedy: format!(
+                "write one of {}",
+                Status::ALL.map(|status| status.to_string()).join(", ")
+            ),
+        })
+    }
+}
+
+/// What a case found out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// How it ended.
+    pub status: Status,
+    /// What was measured, and what is wrong if something is.
+    pub measured: String,
+}
+
+impl Finding {
+    /// The rule holds.
+    pub fn pass(measured: impl Into<String>) -> Finding {
+        Finding {
+            status: Status::Pass,
+            measured: measured.into(),
+        }
+    }
+
+    /// The rule does not hold.
+    pub fn fail(measured: impl Into<String>) -> Finding {
+        Finding {
+            status: Status::Fail,
+            measured: measured.into(),
+        }
+    }
+
+    /// The device lacks `what`.
+    pub fn skip(what: impl Into<String>) -> Finding {
+        Finding {
+            status: Status::Skip,
+            measured: what.into(),
+        }
+    }
+
+    /// Allowed, but not what one would wish.
+    pub fn warn(measured: impl Into<String>) -> Finding {
+        Finding {
+            status: Status::Warn,
+            measured: measured.into(),
+        }
+    }
+}
+
+/// Collects what does not hold, and tells the first of it.
+#[derive(Debug, Default)]
+pub struct Check {
+    held: u64,
+    broken: u64,
+    first: Option<String>,
+}
+
+impl Check {
+    /// Notes whether something holds; `what` says what is wrong if not.
+    pub fn hold(&mut self, holds: bool, what: impl FnOnce() -> String) {
+        if holds {
+            self.held += 1;
+        } else {
+            self.broken += 1;
+            self.first.get_or_insert_with(what);
+        }
+    }
+
+    /// The finding: a failure if something did not hold, or if nothing at all was looked at.
+    pub fn finish(self, measured: impl fmt::Display) -> Finding {
+        match self.first {
+            None if self.held == 0 => Finding::fail(format!("nothing was compared; {measured}")),
+            None => Finding::pass(format!("{measured}")),
+            Some(first) => Finding::fail(format!(
+                "{} of {} do not hold, first: {first}; {measured}",
+                self.broken,
+                self.broken + self.held
+            )),
+        }
+    }
+}
+
+/// The code of a case.
+pub type Run = Box<dyn Fn(&Context) -> Result<Finding> + Send + Sync>;
+
+/// A case of the suite.
+pub struct Case {
+    /// `group.subgroup.case`, in lower case.
+    pub name: String,
+    /// What must hold.
+    pub rule: String,
+    /// Where that is written: a section of a specification or of a paper.
+    pub source: &'static str,
+    /// How long it may take on the slowest device that is worth waiting for.
+    pub limit: Duration,
+    run: Run,
+}
+
+/// What a case may take if it says nothing else. A software device on a busy machine needs a tenth of it.
+pub const LIMIT: Duration = Duration::from_secs(60);
+
+impl Case {
+    /// A case with the usual time limit.
+    pub fn new(
+        name: impl Into<String>,
+        rule: impl Into<String>,
+        source: &'static str,
+        run: impl Fn(&Context) -> Result<Finding> + Send + Sync + 'static,
+    ) -> Case {
+        Case {
+            name: name.into(),
+            rule: rule.into(),
+            source,
+            limit: LIMIT,
+            run: Box::new(run),
+        }
+    }
+
+    /// The same with another time limit.
+    pub fn within(self, limit: Duration) -> Case {
+        Case { limit, ..self }
+    }
+
+    /// Runs it. A Vulkan call that fails, or a message of the validation layer, is a failure of the case.
+    pub fn run(&self, context: &Context) -> Finding {
+        let before = context.validation_messages().len();
+        let found = (self.run)(context).unwrap_or_else(|error| Finding::fail(error.to_string()));
+        match context.validation_messages().get(before) {
+            Some(message) => Finding::fail(format!("validation: {message}; {}", found.measured)),
+            None => found,
+        }
+    }
+}
+
+impl fmt::Debug for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Case").field(&self.name).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_read_back() {
+        for status in Status::ALL {
+            assert_eq!(status.to_string().parse::<Status>().ok(), Some(status));
+        }
+        assert!("pass".parse::<Status>().is_err());
+    }
+
+    #[test]
+    fn a_check_of_nothing_fails() {
+        assert_eq!(Check::default().finish("").status, Status::Fail);
+    }
+
+    #[test]
+    fn a_check_tells_the_first_and_counts_all() {
+        let mut check = Check::default();
+        check.hold(true, String::new);
+        check.hold(false, || "one".into());
+        check.hold(false, || "two".into());
+        let found = check.finish("3 looked at");
+        assert_eq!(found.status, Status::Fail);
+        assert_eq!(
+            found.measured,
+            "2 of 3 do not hold, first: one; 3 looked at"
+        );
+    }
+}

@@ -1,0 +1,218 @@
+//! What cases run in: devices that are opened once and shared, the user's models, and faults to seed.
+
+use std::cell::{Cell, OnceCell};
+use std::fmt;
+use std::str::FromStr;
+
+use glob::Pattern;
+
+use crate::conformance::capture::Bench;
+use crate::conformance::random::Random;
+use crate::error::{Error, Result};
+use crate::gpu::{Slots, Workaround};
+use crate::host::{Device, Instance};
+use crate::mesh::Model;
+
+/// How the suite is run.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Vulkan device: an index or a part of a name.
+    pub device: Option<String>,
+    /// Under the validation layer.
+    pub validation: bool,
+    /// With the workarounds for driver faults where our own surfaces are drawn. Raw draws never have them.
+    pub workarounds: bool,
+    /// Bytes of the scratch ring, where a case has no reason for another size.
+    pub ring_bytes: u64,
+    /// Who gives slots, likewise.
+    pub slots: Slots,
+    /// Where random numbers begin.
+    pub seed: u64,
+    /// A fault to seed, so that a test sees it caught.
+    pub fault: Option<Fault>,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            device: None,
+            validation: false,
+            workarounds: true,
+            ring_bytes: 1 << 20,
+            slots: Slots::Counter,
+            seed: 0,
+            fault: None,
+        }
+    }
+}
+
+/// A deliberate fault in some cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// What goes wrong.
+    pub kind: FaultKind,
+    /// The cases in which it does.
+    pub cases: Pattern,
+}
+
+/// What goes wrong on purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaultKind {
+    /// What is compared differs from what it should be: each group's file says how.
+    Wrong,
+    /// The process aborts.
+    Crash,
+    /// The case never ends.
+    Hang,
+    /// Every second run fails.
+    Flicker,
+}
+
+const FAULTS: [(&str, FaultKind); 4] = [
+    ("wrong", FaultKind::Wrong),
+    ("crash", FaultKind::Crash),
+    ("hang", FaultKind::Hang),
+    ("flicker", FaultKind::Flicker),
+];
+
+impl FromStr for Fault {
+    type Err = Error;
+
+    /// Reads `KIND:GLOB`, such as `crash:scale.*`.
+    fn from_str(text: &str) -> Result<Fault> {
+        let read = || {
+            let (kind, cases) = text.split_once(':')?;
+            let (_, kind) = FAULTS.iter().find(|(name, _)| *name == kind)?;
+            let cases = Pattern::new(cases).ok()?;
+            Some(Fault { kind: *kind, cases })
+        };
+        read().ok_or_else(|| Error::Option {
+            option: "--fault",
+            problem: format!("'{text}' is no fault"),
+            remedy: "write wrong, crash, hang or flicker, then ':' and a pattern of cases".into(),
+        })
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, _) = FAULTS
+            .iter()
+            .find(|(_, kind)| *kind == self.kind)
+            .expect("every kind has a name");
+        write!(f, "{name}:{}", self.cases)
+    }
+}
+
+/// What a case runs in.
+pub struct Context {
+    /// How the suite is run.
+    pub settings: Settings,
+    /// The user's models by name; none when the suite runs on its own.
+    pub models: Vec<(String, Model)>,
+    instance: Instance,
+    bench: OnceCell<Bench>,
+    robust_bench: OnceCell<Bench>,
+    device: OnceCell<Device>,
+    wrong: Cell<bool>,
+}
+
+impl Context {
+    /// Loads Vulkan. Devices are opened when a case asks for one.
+    pub fn new(settings: Settings, models: Vec<(String, Model)>) -> Result<Context> {
+        Ok(Context {
+            instance: Instance::new(settings.validation)?,
+            settings,
+            models,
+            bench: OnceCell::new(),
+            robust_bench: OnceCell::new(),
+            device: OnceCell::new(),
+            wrong: Cell::new(false),
+        })
+    }
+
+    /// The device.
+    pub fn device(&self) -> Result<&Device> {
+        opened(&self.device, || {
+            Device::open(&self.instance, self.settings.device.as_deref())
+        })
+    }
+
+    /// The device with what our surfaces share.
+    pub(super) fn bench(&self) -> Result<&Bench> {
+        opened(&self.bench, || Bench::new(self.device()?))
+    }
+
+    /// The same with robust buffer access: on a logical device of its own.
+    pub(super) fn robust_bench(&self) -> Result<&Bench> {
+        opened(&self.robust_bench, || {
+            let selector = self.settings.device.as_deref();
+            Bench::new(&Device::open_robust(&self.instance, selector)?)
+        })
+    }
+
+    /// The workarounds for our own surfaces.
+    pub fn workarounds(&self) -> Result<Vec<&'static Workaround>> {
+        if self.settings.workarounds {
+            Ok(self.device()?.info().workarounds.clone())
+        } else {
+            Ok(Vec::new())
+        }
+    }
+
+    /// Random numbers that depend on the seed and on `stream` alone.
+    pub fn random(&self, stream: &str) -> Random {
+        Random::new(self.settings.seed, stream)
+    }
+
+    /// Whether the case that runs shall compare with something wrong: each group's file says with what.
+    pub fn is_wrong(&self) -> bool {
+        self.wrong.get()
+    }
+
+    /// Every validation message so far.
+    pub fn validation_messages(&self) -> Vec<String> {
+        self.instance.validation_messages()
+    }
+
+    /// Seeds the fault, if there is one for the case `name` that is about to run for the `run`-th time.
+    pub(super) fn seed_fault(&self, name: &str, run: u32) {
+        let fault = self.settings.fault.as_ref();
+        let kind = fault
+            .filter(|fault| fault.cases.matches(name))
+            .map(|fault| fault.kind);
+        self.wrong.set(match kind {
+            Some(FaultKind::Wrong) => true,
+            Some(FaultKind::Flicker) => run % 2 == 1,
+            Some(FaultKind::Crash) => std::process::abort(),
+            Some(FaultKind::Hang) => loop {
+                std::thread::park();
+            },
+            None => false,
+        });
+    }
+}
+
+fn opened<T>(cell: &OnceCell<T>, open: impl FnOnce() -> Result<T>) -> Result<&T> {
+    if let Some(there) = cell.get() {
+        return Ok(there);
+    }
+    let made = open()?;
+    Ok(cell.get_or_init(|| made))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_read_back() {
+        for text in ["wrong:*", "crash:a.b.*", "hang:x", "flicker:?"] {
+            let fault: Fault = text.parse().expect(text);
+            assert_eq!(fault.to_string(), text);
+        }
+        for text in ["", "wrong", "melt:*", "wrong:[", "wrong:***"] {
+            assert!(text.parse::<Fault>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,401 @@
+//! Group `limit`: captured positions and normals against the truth.
+//!
+//! Distances are in units: last places of a float that is as large as the model, which is the diagonal times 2^-23. A seeded fault moves a
+//! control vertex by a part in a thousand before the truth is asked.
+
+use glam::{DVec3, Vec2, Vec3};
+
+use crate::abi::{self, Captured};
+use crate::conformance::capture::{Frame, SPACINGS, captured, cut, spacing_name};
+use crate::conformance::meshes::{
+    Draft, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, with_positions,
+};
+use crate::conformance::{Case, Check, Context, Finding, Group};
+use crate::error::{Error, Result};
+use crate::gpu::{Cut, Fill};
+use crate::mesh::{ControlMesh, CreaseMethod, Model, SchemeOptions, builtin};
+use crate::method::{METHODS, Method, Pass, Prepared, method, to_ptex};
+use crate::plan::{Leaf, PlanOptions, Plans, walk};
+use crate::subdivision::{LimitSample, LimitSurface, Scheme};
+use crate::tessellation::Spacing;
+
+/// The group.
+pub const GROUP: Group = Group {
+    name: "limit",
+    about: "positions and normals, against the limit in f64",
+    cases,
+    model_cases: Some(model_cases),
+};
+
+const PAPER: &str = "Brainerd et al. 2016, sections 4 to 7";
+const RULE: &str = "positions and normals keep the method's contract";
+
+/// The points of a frame that are compared at most: the truth takes its time.
+const SAMPLES: usize = 1500;
+
+/// How a surface is prepared and drawn.
+#[derive(Clone, Copy)]
+struct Setup {
+    method: &'static str,
+    options: PlanOptions,
+    cut: Cut,
+    /// Only what lies in nodes of this kind; `abi::NODE_...`.
+    kind: Option<u32>,
+}
+
+impl Setup {
+    fn new(level: f32, spacing: Spacing) -> Setup {
+        Setup {
+            method: "quadtree",
+            options: PlanOptions::default(),
+            cut: cut(level, spacing),
+            kind: None,
+        }
+    }
+}
+
+/// A case for a mesh that is made when it runs.
+fn case(
+    name: String,
+    setup: Setup,
+    mesh: impl Fn(&Context) -> Result<ControlMesh> + Send + Sync + 'static,
+) -> Case {
+    Case::new(name, RULE, PAPER, move |context| {
+        measure(context, &Model::new(mesh(context)?), setup)
+    })
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    cases.extend(valences());
+    cases.extend(sharpnesses());
+    cases.extend(kinds());
+    cases.extend(depths());
+    cases.extend(levels());
+    cases.extend(shapes());
+    cases.extend(places());
+    cases.extend((0..30).map(|number| {
+        let setup = Setup::new(9.0, SPACINGS[number % 2]);
+        case(format!("limit.random.{number}"), setup, move |context| {
+            Draft::random(context.random(&format!("limit.random.{number}")))
+        })
+    }));
+    cases
+}
+
+fn model_cases(name: &str) -> Vec<Case> {
+    SPACINGS
+        .map(|spacing| {
+            let model = name.to_owned();
+            let name = format!("limit.model.{name}-{}", spacing_name(spacing));
+            let setup = Setup::new(8.0, spacing);
+            Case::new(name, RULE, PAPER, move |context| {
+                let found = context.models.iter().find(|(name, _)| *name == model);
+                let (_, model) =
+                    found.ok_or_else(|| Error::Refused(format!("there is no {model}")))?;
+                measure(context, model, setup)
+            })
+        })
+        .into()
+}
+
+/// Interior vertices of quads, of triangles, and boundary vertices.
+fn valences() -> impl Iterator<Item = Case> {
+    let setup = Setup::new(8.0, Spacing::Equal);
+    let quads = (3..=16).chain([20, 24, 31, 32, 33, 48, 63, 64]);
+    let quads = quads.map(move |n| {
+        case(format!("limit.valence.quads-{n}"), setup, move |_| {
+            star(n).build()
+        })
+    });
+    let triangles = [3, 4, 5, 6, 7, 12, 31, 32, 64].map(move |n| {
+        case(format!("limit.valence.triangles-{n}"), setup, move |_| {
+            builtin(&format!("pole-{n}"))
+        })
+    });
+    let boundary = [1, 2, 3, 4, 5, 6, 8, 16, 32].map(move |n| {
+        case(format!("limit.valence.boundary-{n}"), setup, move |_| {
+            open_star(n).build()
+        })
+    });
+    let polygons = [3, 5, 6, 7, 8, 12, 20].map(move |n| {
+        case(format!("limit.valence.polygon-{n}"), setup, move |_| {
+            framed_polygon(n).build()
+        })
+    });
+    quads.chain(triangles).chain(boundary).chain(polygons)
+}
+
+fn sharpnesses() -> impl Iterator<Item = Case> {
+    let setup = Setup::new(11.0, Spacing::Equal);
+    let word = |sharpness: f32| format!("{sharpness:.1}").replace('.', "_");
+    let all = [0.1, 0.5, 1.0, 1.3, 2.0, 2.7, 3.0, 4.2, 6.0, 8.5, 9.9, 10.0];
+    let creases = all.map(|sharpness| {
+        let name = format!("limit.sharpness.crease-{}", word(sharpness));
+        case(name, setup, move |_| {
+            creased_sheet(sharpness, 6, SchemeOptions::default())
+        })
+    });
+    let darts = [0.5, 1.5, 3.0, 10.0].map(|sharpness| {
+        let name = format!("limit.sharpness.dart-{}", word(sharpness));
+        case(name, setup, move |_| {
+            creased_sheet(sharpness, 3, SchemeOptions::default())
+        })
+    });
+    let corners = [0.5, 1.0, 2.4, 5.0, 10.0].map(|sharpness| {
+        let name = format!("limit.sharpness.corner-{}", word(sharpness));
+        case(name, setup, move |_| cornered_sheet(sharpness))
+    });
+    let chaikin = [0.7, 1.5, 3.2].map(|sharpness| {
+        let name = format!("limit.sharpness.chaikin-{}", word(sharpness));
+        let options = SchemeOptions {
+            creasing: CreaseMethod::Chaikin,
+            ..Default::default()
+        };
+        case(name, setup, move |_| creased_sheet(sharpness, 4, options))
+    });
+    let all = creases.into_iter().chain(darts);
+    all.chain(corners).chain(chaikin)
+}
+
+/// The kinds of node, each in a shape that has many of it.
+const KINDS: [(&str, u32, &str); 5] = [
+    ("regular", abi::NODE_REGULAR, "hull"),
+    ("boundary", abi::NODE_BOUNDARY, "sheet"),
+    ("crease", abi::NODE_CREASE, "creased-torus"),
+    ("terminal", abi::NODE_TERMINAL, "ngons"),
+    ("extraordinary", abi::NODE_EXTRAORDINARY, "hull"),
+];
+
+fn kinds() -> impl Iterator<Item = Case> {
+    KINDS.into_iter().flat_map(|(name, kind, shape)| {
+        SPACINGS.map(|spacing| {
+            let setup = Setup {
+                kind: Some(kind),
+                ..Setup::new(12.0, spacing)
+            };
+            let name = format!("limit.kind.{name}-{}", spacing_name(spacing));
+            case(name, setup, move |_| builtin(shape))
+        })
+    })
+}
+
+fn depths() -> impl Iterator<Item = Case> {
+    let depths = (1..=8).map(|max_level| {
+        let options = PlanOptions {
+            max_level,
+            ..Default::default()
+        };
+        let level = (1u32 << max_level).min(20) as f32;
+        let setup = Setup {
+            options,
+            ..Setup::new(level, Spacing::Equal)
+        };
+        case(format!("limit.depth.{max_level}_levels"), setup, |_| {
+            builtin("ngons")
+        })
+    });
+    let refined = Setup {
+        options: PlanOptions {
+            direct_creases: false,
+            ..Default::default()
+        },
+        ..Setup::new(9.0, Spacing::Equal)
+    };
+    let name = "limit.depth.refined_creases".to_owned();
+    depths.chain([case(name, refined, |_| builtin("creased-torus"))])
+}
+
+fn levels() -> impl Iterator<Item = Case> {
+    let whole = [1, 2, 3, 4, 5, 7, 8, 13, 16, 31, 33, 63, 64];
+    let whole = whole
+        .into_iter()
+        .flat_map(|level| SPACINGS.map(|spacing| (level.to_string(), level as f32, spacing)));
+    let between = [1.5, 2.3, 4.7, 10.1, 63.3];
+    let between = between.map(|level| {
+        let word = level.to_string().replace('.', "_");
+        (word, level, Spacing::FractionalEven)
+    });
+    whole.chain(between).map(|(word, level, spacing)| {
+        let name = format!("limit.level.{word}-{}", spacing_name(spacing));
+        case(name, Setup::new(level, spacing), |_| builtin("cube"))
+    })
+}
+
+const SHAPES: [&str; 6] = [
+    "hull",
+    "ngons",
+    "sheet",
+    "creased-torus",
+    "cubes-2x1x1",
+    "pole-360",
+];
+
+fn shapes() -> impl Iterator<Item = Case> {
+    let methods = METHODS.iter().map(|method| method.name);
+    methods.flat_map(|method| {
+        SHAPES.into_iter().flat_map(move |shape| {
+            SPACINGS.map(|spacing| {
+                let setup = Setup {
+                    method,
+                    ..Setup::new(6.0, spacing)
+                };
+                let name = format!("limit.{method}.{shape}-{}", spacing_name(spacing));
+                case(name, setup, move |_| builtin(shape))
+            })
+        })
+    })
+}
+
+/// Scales and distances from the origin.
+const PLACES: [(&str, f64, f64); 5] = [
+    ("far", 0.1, 1000.0),
+    ("farther", 1.0, 1e7),
+    ("tiny", 1e-9, 0.0),
+    ("large", 1e9, 0.0),
+    ("enormous", 1e25, 0.0),
+];
+
+fn places() -> impl Iterator<Item = Case> {
+    PLACES.into_iter().flat_map(|(word, scale, by)| {
+        ["hull", "ngons"].map(|shape| {
+            let setup = Setup::new(8.0, Spacing::Equal);
+            case(format!("limit.place.{word}-{shape}"), setup, move |_| {
+                moved(&builtin(shape)?, scale, by)
+            })
+        })
+    })
+}
+
+fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
+    let method = method(setup.method)?;
+    let prepared = (method.prepare)(model, setup.options)?;
+    let passes = prepared.clone();
+    let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
+    let truth = truth(context, model, method)?;
+    let ruler = Ruler {
+        model,
+        truth,
+        unit: diagonal(model.mesh()) * 0.5f64.powi(23),
+        most: method.contract.limit.unwrap_or(1e-6) * 2f64.powi(23),
+        most_degrees: method.contract.normals.unwrap_or(0.1),
+    };
+    let samples = samples(&passes, &frame, setup.kind);
+    let step = (samples.len() / SAMPLES) | 1;
+    let mut check = Check::default();
+    check.hold(frame.counters.overflows == 0, || {
+        format!("{} patches were left out", frame.counters.overflows)
+    });
+    let mut worst = [0.0; 2];
+    let mut count = 0;
+    for (pass, vertex) in samples.into_iter().step_by(step) {
+        let off = ruler.hold(&mut check, pass, vertex);
+        worst = std::array::from_fn(|i| f64::max(worst[i], off[i]));
+        count += 1;
+    }
+    if count == 0 {
+        return Ok(Finding::fail("no vertex lies in such a node"));
+    }
+    Ok(check.finish(format!(
+        "{count} points, at most {:.2} units and {:.5} degrees off",
+        worst[0], worst[1]
+    )))
+}
+
+/// The truth of a method's contract: linear faces where it promises no limit.
+fn truth(context: &Context, model: &Model, method: &Method) -> Result<LimitSurface> {
+    let scheme = match method.contract.limit {
+        Some(_) => Scheme::CatmullClark,
+        None => Scheme::Bilinear,
+    };
+    let mesh = model.mesh();
+    if !context.is_wrong() {
+        return Ok(LimitSurface::of_scheme(mesh, scheme));
+    }
+    let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
+    positions[0][2] += 1e-3 * diagonal(mesh);
+    let other = with_positions(mesh, &positions)?;
+    Ok(LimitSurface::of_scheme(&other, scheme))
+}
+
+fn diagonal(mesh: &ControlMesh) -> f64 {
+    let (low, high) = mesh.bounds();
+    low.distance(high)
+}
+
+/// The captured vertices with their passes, all or those in nodes of a kind.
+fn samples<'a>(
+    prepared: &'a Prepared,
+    frame: &'a Frame,
+    kind: Option<u32>,
+) -> Vec<(&'a Pass, &'a Captured)> {
+    let passes = prepared.passes.iter().zip(&frame.passes);
+    passes
+        .flat_map(|(pass, vertices)| vertices.iter().map(move |vertex| (pass, vertex)))
+        .filter(|(pass, vertex)| kind.is_none_or(|kind| kind_of(pass, vertex) == kind))
+        .collect()
+}
+
+/// The kind of the node that a vertex lies in; a patch without a plan is a regular one.
+fn kind_of(pass: &Pass, vertex: &Captured) -> u32 {
+    let [headers, nodes, points, weights] = &pass.tables[..] else {
+        return abi::NODE_REGULAR;
+    };
+    let plans = Plans {
+        headers: bytemuck::cast_slice(headers),
+        nodes: bytemuck::cast_slice(nodes),
+        points,
+        weights: bytemuck::cast_slice(weights),
+    };
+    let plan = pass.patches[vertex.patch_number as usize].plan;
+    match walk(plans, plan, Vec2::from(vertex.uv)) {
+        Leaf::Corner(_) => abi::NODE_EXTRAORDINARY,
+        Leaf::Bspline { kind, .. } => kind,
+    }
+}
+
+/// What captured vertices are measured with.
+struct Ruler<'a> {
+    model: &'a Model,
+    truth: LimitSurface,
+    /// A unit in the model's own measure.
+    unit: f64,
+    most: f64,
+    most_degrees: f64,
+}
+
+impl Ruler<'_> {
+    /// Measures a vertex: units and degrees.
+    fn hold(&self, check: &mut Check, pass: &Pass, vertex: &Captured) -> [f64; 2] {
+        let patch = &pass.patches[vertex.patch_number as usize];
+        let uv = to_ptex(patch, vertex.uv);
+        let [u, v] = uv.map(f64::from);
+        let Some(right) = self.truth.evaluate(patch.ptex as usize, u, v) else {
+            check.hold(false, || format!("ptex face {} is a hole", patch.ptex));
+            return [0.0; 2];
+        };
+        let position = Vec3::from(vertex.position).as_dvec3() + self.model.centre();
+        let units = position.distance(right.position) / self.unit;
+        let degrees = self.degrees(vertex.normal, &right);
+        // NaN must not pass.
+        check.hold(units <= self.most && degrees <= self.most_degrees, || {
+            format!(
+                "{units:.2} units and {degrees:.4} degrees off at {uv:?} of ptex face {}",
+                patch.ptex
+            )
+        });
+        [units, degrees]
+    }
+
+    /// The angle between a captured normal and the right one; 0 where the surface folds or stands still: there f32 has no normal.
+    fn degrees(&self, captured: [f32; 3], right: &LimitSample) -> f64 {
+        let (du, dv) = (right.du.normalize_or_zero(), right.dv.normalize_or_zero());
+        let shortest = right.du.length().min(right.dv.length()) / diagonal(self.model.mesh());
+        if du.cross(dv).length() * shortest <= 0.01 {
+            return 0.0;
+        }
+        let (captured, right): (DVec3, DVec3) = (Vec3::from(captured).as_dvec3(), right.normal());
+        let sine = captured.cross(right).length();
+        sine.atan2(captured.dot(right)).to_degrees()
+    }
+}

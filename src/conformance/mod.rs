@@ -1,0 +1,40 @@
+//! The suite of `hullform verify`: does a driver keep the rules that we rely on, and do we keep our own?
+//!
+//! Cases are named `group.subgroup.case`. Each states its rule and where that is written, and reports what it measured. A group is a file
+//! here and a row of [`GROUPS`]. The suite runs its cases in worker processes ([`Runner`]), so that a driver's crash or hang ends one
+//! case and no more; and holds results to a list of what the driver is known to do wrong ([`Expectations`]).
+//!
+//! Raw groups (`coordinates`, `scale`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
+//! what they find is the driver's. The others draw our surfaces.
+//!
+//! What the suite found in drivers stands in [`bugs`].
+
+pub mod bugs;
+mod capture;
+mod case;
+mod context;
+mod coordinates;
+mod determinism;
+mod expectations;
+mod limit;
+mod meshes;
+mod modes;
+mod random;
+mod raw;
+mod registry;
+mod report;
+mod robustness;
+mod runner;
+mod scale;
+mod statistics;
+mod visibility;
+mod worker;
+
+pub use case::{Case, Check, Finding, LIMIT, Status};
+pub use context::{Context, Fault, FaultKind, Settings};
+pub use expectations::{Expectation, Expectations};
+pub use random::Random;
+pub use registry::{GROUPS, Group, Registry};
+pub use report::{CaseResult, Report};
+pub use runner::{RunOptions, Runner};
+pub use worker::work;

@@ -1,0 +1,142 @@
+//! All cases, by group.
+
+use glob::Pattern;
+
+use crate::conformance::{
+    Case, coordinates, determinism, limit, robustness, scale, statistics, visibility,
+};
+use crate::error::{Error, Result};
+
+/// A group of cases: a file of this folder.
+pub struct Group {
+    /// The first word of its cases' names.
+    pub name: &'static str,
+    /// What it is about, in a line.
+    pub about: &'static str,
+    /// Its cases.
+    pub cases: fn() -> Vec<Case>,
+    /// Its cases for a mesh of the user's, by the name that [`Context::models`](super::Context::models) gives it; None when meshes do not
+    /// concern it.
+    pub model_cases: Option<fn(&str) -> Vec<Case>>,
+}
+
+/// Every group.
+pub const GROUPS: &[Group] = &[
+    coordinates::GROUP,
+    limit::GROUP,
+    scale::GROUP,
+    visibility::GROUP,
+    determinism::GROUP,
+    statistics::GROUP,
+    robustness::GROUP,
+];
+
+/// Cases to run, in order.
+#[derive(Debug)]
+pub struct Registry {
+    /// The cases.
+    pub cases: Vec<Case>,
+}
+
+impl Registry {
+    /// The whole suite.
+    pub fn suite() -> Registry {
+        Registry {
+            cases: GROUPS.iter().flat_map(|group| (group.cases)()).collect(),
+        }
+    }
+
+    /// What the suite has for the user's meshes of these names.
+    pub fn of_models<'a>(names: impl IntoIterator<Item = &'a str> + Clone) -> Registry {
+        let groups = GROUPS.iter().filter_map(|group| group.model_cases);
+        let cases = groups.flat_map(|cases| names.clone().into_iter().flat_map(cases));
+        Registry {
+            cases: cases.collect(),
+        }
+    }
+
+    /// Keeps the cases whose names match a pattern; `*` stands for dots as well.
+    ///
+    /// # Errors
+    /// [`Error::Option`] for what is no pattern, or matches nothing: a filter with a typing error shall not pass.
+    pub fn filter(&mut self, pattern: &str) -> Result<()> {
+        let refused = |problem: String| Error::Option {
+            option: "--filter",
+            problem,
+            remedy: "see `hullform verify --list` for the names; `*` stands for any part of one"
+                .into(),
+        };
+        let compiled = Pattern::new(pattern)
+            .map_err(|error| refused(format!("'{pattern}' is no pattern: {error}")))?;
+        self.cases.retain(|case| compiled.matches(&case.name));
+        if self.cases.is_empty() {
+            return Err(refused(format!("no case matches '{pattern}'")));
+        }
+        Ok(())
+    }
+
+    /// The case of a name.
+    pub fn find(&self, name: &str) -> Option<&Case> {
+        self.cases.iter().find(|case| case.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_have_three_parts() {
+        let suite = Registry::suite();
+        let mut seen = BTreeSet::new();
+        for case in &suite.cases {
+            assert!(seen.insert(&case.name), "{} is there twice", case.name);
+            let parts: Vec<&str> = case.name.split('.').collect();
+            assert_eq!(parts.len(), 3, "{}", case.name);
+            let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-".contains(c);
+            assert!(
+                parts.iter().all(|part| part.chars().all(plain)),
+                "{}",
+                case.name
+            );
+            assert!(GROUPS.iter().any(|group| group.name == parts[0]));
+            assert!(!case.rule.is_empty() && !case.source.is_empty());
+        }
+        assert!(seen.len() > 300, "hundreds of cases, not {}", seen.len());
+    }
+
+    #[test]
+    fn no_group_is_empty() {
+        for group in GROUPS {
+            assert!((group.cases)().len() >= 10, "{}", group.name);
+        }
+    }
+
+    #[test]
+    fn filters_keep_what_they_name() {
+        let mut suite = Registry::suite();
+        suite.filter("scale.*").expect("there are such");
+        assert!(
+            suite
+                .cases
+                .iter()
+                .all(|case| case.name.starts_with("scale."))
+        );
+        assert!(suite.filter("no.such.case").is_err());
+        assert!(Registry::suite().filter("[").is_err());
+    }
+
+    #[test]
+    fn meshes_of_the_user_have_cases_of_their_own() {
+        let cases = Registry::of_models(["ship", "car"]).cases;
+        assert!(cases.iter().any(|case| case.name.contains("ship")));
+        assert!(cases.iter().any(|case| case.name.starts_with("limit.")));
+        assert!(
+            cases
+                .iter()
+                .any(|case| case.name.starts_with("statistics."))
+        );
+    }
+}

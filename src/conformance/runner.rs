@@ -1,0 +1,404 @@
+//! The runner's side: worker processes, time limits, repetitions, and results that are never lost.
+
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::conformance::worker::{Answer, request};
+use crate::conformance::{Case, CaseResult, Expectations, Finding, Report, Status};
+
+/// How long a worker may take until it is ready. Loading a driver takes less than a second; a busy machine gets more.
+const START: Duration = Duration::from_secs(60);
+
+/// What is kept of the last that a worker said, in bytes.
+const LAST_WORDS: usize = 4096;
+
+/// How cases are run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Runs of each case; different ends make it a [`Status::Flake`].
+    pub repeat: u32,
+    /// Worker processes at a time.
+    pub jobs: usize,
+    /// A time limit for all cases instead of their own.
+    pub limit: Option<Duration>,
+}
+
+/// Runs cases in worker processes.
+pub struct Runner<'a> {
+    /// Makes a worker: a process that calls [`work`](super::work) on its standard input and output.
+    pub worker: &'a (dyn Fn() -> Command + Sync),
+    /// What is known of the driver.
+    pub expectations: &'a Expectations,
+    /// How.
+    pub options: RunOptions,
+}
+
+impl Runner<'_> {
+    /// Runs all cases; `done` hears of each result as it comes, and the report has them in the cases' order.
+    ///
+    /// # Errors
+    /// When no worker can be started at all.
+    pub fn run(&self, cases: &[Case], mut done: impl FnMut(&CaseResult)) -> io::Result<Report> {
+        let next = AtomicUsize::new(0);
+        let (sender, results) = mpsc::channel();
+        thread::scope(|scope| {
+            for _ in 0..self.options.jobs.max(1) {
+                let (sender, next) = (sender.clone(), &next);
+                scope.spawn(move || self.take_cases(cases, next, &sender));
+            }
+            drop(sender);
+            let mut report: Vec<Option<CaseResult>> = vec![None; cases.len()];
+            for (place, result) in results {
+                let result = result?;
+                done(&result);
+                report[place] = Some(result);
+            }
+            let complete: Option<Vec<CaseResult>> = report.into_iter().collect();
+            Ok(Report {
+                results: complete.expect("every case that is taken is answered"),
+            })
+        })
+    }
+
+    /// One worker after another, until no case is left.
+    fn take_cases(
+        &self,
+        cases: &[Case],
+        next: &AtomicUsize,
+        results: &mpsc::Sender<(usize, io::Result<CaseResult>)>,
+    ) {
+        let mut worker = None;
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(case) = cases.get(place) else { return };
+            let result = self.repeated(case, &mut worker);
+            let failed = result.is_err();
+            if results.send((place, result)).is_err() || failed {
+                next.store(cases.len(), Ordering::Relaxed);
+                return;
+            }
+        }
+    }
+
+    /// Runs a case as often as asked.
+    fn repeated(&self, case: &Case, worker: &mut Option<Worker>) -> io::Result<CaseResult> {
+        let started = Instant::now();
+        let mut findings: Vec<Finding> = Vec::new();
+        for run in 0..self.options.repeat.max(1) {
+            let finding = self.once(case, run, worker)?;
+            let lost = matches!(finding.status, Status::Crash | Status::Timeout);
+            findings.push(finding);
+            if lost {
+                break;
+            }
+        }
+        let Finding { status, measured } = together(findings);
+        let (judged, reason) = self.expectations.judge(&case.name, status);
+        Ok(CaseResult {
+            name: case.name.clone(),
+            status: judged,
+            found: status,
+            measured,
+            reason: reason.map(String::from),
+            seconds: started.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Runs a case once. A worker that is lost in it is replaced for the next.
+    fn once(&self, case: &Case, run: u32, worker: &mut Option<Worker>) -> io::Result<Finding> {
+        let limit = self.options.limit.unwrap_or(case.limit);
+        for last_try in [false, true] {
+            let mut at_work = match worker.take() {
+                Some(worker) => worker,
+                None => Worker::start((self.worker)())?,
+            };
+            match at_work.run(&case.name, run, limit) {
+                Outcome::Found(finding) => {
+                    *worker = Some(at_work);
+                    return Ok(finding);
+                }
+                Outcome::Late(seconds) => {
+                    at_work.kill();
+                    return Ok(Finding {
+                        status: Status::Timeout,
+                        measured: format!("no answer after {seconds} s"),
+                    });
+                }
+                // What an earlier case left behind shall not count against this one.
+                Outcome::Lost { begun: false } if !last_try => drop(at_work.ended()),
+                Outcome::Lost { .. } => {
+                    return Ok(Finding {
+                        status: Status::Crash,
+                        measured: at_work.ended(),
+                    });
+                }
+            }
+        }
+        unreachable!("the last try returns")
+    }
+}
+
+/// What repetitions come to.
+fn together(findings: Vec<Finding>) -> Finding {
+    let first = findings[0].clone();
+    let other = findings
+        .iter()
+        .find(|finding| finding.status != first.status);
+    match other {
+        None => first,
+        Some(other) => Finding {
+            status: Status::Flake,
+            measured: format!(
+                "once {}: {}; once {}: {}",
+                first.status, first.measured, other.status, other.measured
+            ),
+        },
+    }
+}
+
+/// A worker process.
+struct Worker {
+    child: Child,
+    requests: Option<ChildStdin>,
+    answers: Receiver<Answer>,
+    last_words: Arc<Mutex<Vec<u8>>>,
+    ready: bool,
+}
+
+/// How a request ended.
+enum Outcome {
+    /// With an answer.
+    Found(Finding),
+    /// Without one in time: after so many seconds.
+    Late(f32),
+    /// With the worker's end, before or after it began with the case.
+    Lost { begun: bool },
+}
+
+impl Worker {
+    fn start(mut command: Command) -> io::Result<Worker> {
+        let mut child = command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()?;
+        let (sender, answers) = mpsc::channel();
+        if let Some(out) = child.stdout.take() {
+            thread::spawn(move || {
+                let lines = BufReader::new(out).split(b'\n').map_while(|line| line.ok());
+                let words = lines.map(|line| String::from_utf8_lossy(&line).into_owned());
+                for answer in words.filter_map(|line| Answer::parse(&line)) {
+                    if sender.send(answer).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        let last_words = Arc::<Mutex<Vec<u8>>>::default();
+        if let Some(errors) = child.stderr.take() {
+            let kept = last_words.clone();
+            thread::spawn(move || keep_last(errors, &kept));
+        }
+        Ok(Worker {
+            requests: child.stdin.take(),
+            child,
+            answers,
+            last_words,
+            ready: false,
+        })
+    }
+
+    fn run(&mut self, name: &str, run: u32, limit: Duration) -> Outcome {
+        if !self.ready {
+            match self.answers.recv_timeout(START) {
+                Ok(_) => self.ready = true,
+                Err(RecvTimeoutError::Timeout) => return Outcome::Late(START.as_secs_f32()),
+                Err(RecvTimeoutError::Disconnected) => return Outcome::Lost { begun: false },
+            }
+        }
+        let asked = self
+            .requests
+            .as_mut()
+            .is_some_and(|pipe| pipe.write_all(request(name, run).as_bytes()).is_ok());
+        if !asked {
+            return Outcome::Lost { begun: false };
+        }
+        let deadline = Instant::now() + limit;
+        let mut begun = false;
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.answers.recv_timeout(left) {
+                Ok(Answer::End(finding)) => return Outcome::Found(finding),
+                Ok(_) => begun = true,
+                Err(RecvTimeoutError::Timeout) => return Outcome::Late(limit.as_secs_f32()),
+                Err(RecvTimeoutError::Disconnected) => return Outcome::Lost { begun },
+            }
+        }
+    }
+
+    /// How it ended, and the last line that it said.
+    fn ended(mut self) -> String {
+        drop(self.requests.take());
+        let ended = self.child.wait();
+        let words = self
+            .last_words
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let words = String::from_utf8_lossy(&words).into_owned();
+        let last = words.lines().rev().find(|line| !line.trim().is_empty());
+        let how = ended.map_or_else(|error| error.to_string(), |status| in_words(&status));
+        match last {
+            Some(line) => format!("the process ended: {how}; its last line: {line}"),
+            None => format!("the process ended: {how}"),
+        }
+    }
+
+    fn kill(&mut self) {
+        // Both fail only if it is gone already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // Between cases the end of its input is the end of the worker; in one it is killed.
+        drop(self.requests.take());
+        let patience = Instant::now() + Duration::from_secs(2);
+        while matches!(self.child.try_wait(), Ok(None)) {
+            if Instant::now() > patience {
+                self.kill();
+                return;
+            }
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+fn in_words(status: &ExitStatus) -> String {
+    // Display says "exit status: 1" or "signal: 6 (SIGABRT)".
+    status.to_string()
+}
+
+fn keep_last(mut from: impl Read, kept: &Mutex<Vec<u8>>) {
+    let mut chunk = [0; 1024];
+    while let Ok(count @ 1..) = from.read(&mut chunk) {
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.extend_from_slice(&chunk[..count]);
+        let surplus = kept.len().saturating_sub(LAST_WORDS);
+        kept.drain(..surplus);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repetitions_that_differ_are_a_flake() {
+        let pass = || Finding::pass("fine");
+        assert_eq!(together(vec![pass(), pass()]).status, Status::Pass);
+        let mixed = together(vec![pass(), Finding::fail("odd")]);
+        assert_eq!(mixed.status, Status::Flake);
+        assert!(mixed.measured.contains("once Fail: odd"));
+    }
+
+    #[test]
+    fn only_the_last_words_are_kept() {
+        let kept = Mutex::default();
+        let said: Vec<u8> = (0..=9999u32).map(|i| i as u8).collect();
+        keep_last(&said[..], &kept);
+        let kept = kept.into_inner().expect("nobody panicked");
+        assert_eq!(kept, said[said.len() - LAST_WORDS..]);
+    }
+
+    #[cfg(unix)]
+    mod processes {
+        use super::*;
+        use crate::conformance::Expectations;
+
+        /// A worker that is a shell script: `answer` runs for each request, with the case's name in `$name`.
+        fn run(answer: &str, limit: Duration) -> Report {
+            let script = format!(
+                "echo 'hullform-verify ready'; while read -r run name; do echo 'hullform-verify begin'; {answer}; done"
+            );
+            let worker = move || {
+                let mut command = Command::new("sh");
+                command.args(["-c", &script]);
+                command
+            };
+            let runner = Runner {
+                worker: &worker,
+                expectations: &Expectations::default(),
+                options: RunOptions {
+                    repeat: 1,
+                    jobs: 2,
+                    limit: Some(limit),
+                },
+            };
+            let case = |name: &str| Case::new(name, "rule", "source", |_| Ok(Finding::pass("")));
+            let cases: Vec<Case> = ["g.s.a", "g.s.bad", "g.s.b", "g.s.c"].map(case).into();
+            let mut heard = 0;
+            let report = runner.run(&cases, |_| heard += 1).expect("sh starts");
+            assert_eq!(heard, 4);
+            report
+        }
+
+        fn statuses(report: &Report) -> Vec<Status> {
+            report.results.iter().map(|result| result.status).collect()
+        }
+
+        const PASS: &str = "echo noise; echo 'hullform-verify end Pass fine'";
+
+        #[test]
+        fn a_crash_ends_one_case() {
+            let crash = format!("case $name in *bad) echo oops >&2; kill -9 $$;; esac; {PASS}");
+            let report = run(&crash, Duration::from_secs(20));
+            let [pass, crash] = [Status::Pass, Status::Crash];
+            assert_eq!(statuses(&report), [pass, crash, pass, pass]);
+            assert!(report.results[1].measured.contains("signal"));
+        }
+
+        #[test]
+        fn a_hang_ends_one_case() {
+            let hang = format!("case $name in *bad) exec sleep 60;; esac; {PASS}");
+            let report = run(&hang, Duration::from_secs(2));
+            let [pass, late] = [Status::Pass, Status::Timeout];
+            assert_eq!(statuses(&report), [pass, late, pass, pass]);
+        }
+
+        /// It answers, and dies before the next request: nobody else pays for that.
+        #[test]
+        fn a_late_death_costs_no_case() {
+            let dies = format!("{PASS}; exit 3");
+            let report = run(&dies, Duration::from_secs(20));
+            assert_eq!(statuses(&report), [Status::Pass; 4]);
+        }
+
+        #[test]
+        fn a_worker_that_never_starts_loses_no_result() {
+            let runner = Runner {
+                worker: &|| {
+                    let mut command = Command::new("sh");
+                    command.args(["-c", "echo no driver >&2; exit 1"]);
+                    command
+                },
+                expectations: &Expectations::default(),
+                options: RunOptions {
+                    repeat: 1,
+                    jobs: 1,
+                    limit: None,
+                },
+            };
+            let case = Case::new("g.s.a", "rule", "source", |_| Ok(Finding::pass("")));
+            let report = runner.run(&[case], |_| ()).expect("sh starts");
+            assert_eq!(report.results[0].status, Status::Crash);
+            assert!(report.results[0].measured.contains("no driver"));
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Group `statistics`: the driver's own counters equal what the CPU predicts.
+//!
+//! A seeded fault predicts one patch more.
+
+use crate::conformance::capture::{
+    SPACINGS, captured, cut, over_patches, prepare, spacing_name, vertices,
+};
+use crate::conformance::coordinates::{TessLevels, segments, shoot};
+use crate::conformance::modes::{Domain, Modes, Spacing};
+use crate::conformance::raw::Raster;
+use crate::conformance::{Case, Check, Context, Finding, Group};
+use crate::error::{Error, Result};
+use crate::gpu::{Cut, Fill};
+use crate::mesh::{Model, builtin};
+use crate::method::METHODS;
+
+/// The group.
+pub const GROUP: Group = Group {
+    name: "statistics",
+    about: "the driver's counters, against the predicted work",
+    cases,
+    model_cases: Some(model_cases),
+};
+
+const SOURCE: &str = "Vulkan, Pipeline Statistics Queries";
+const RULE: &str = "patches, evaluations, triangles and stencils are as many as predicted";
+
+const SHAPES: [&str; 8] = [
+    "cube",
+    "hull",
+    "ngons",
+    "sheet",
+    "creased-torus",
+    "pole-7",
+    "pole-64",
+    "cubes-4x3x2",
+];
+
+const LEVELS: [f32; 5] = [1.0, 2.0, 5.0, 7.5, 16.0];
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for shape in SHAPES {
+        for (method, spacing) in METHODS
+            .iter()
+            .flat_map(|method| SPACINGS.map(|spacing| (method, spacing)))
+        {
+            let name = format!(
+                "statistics.{}.{shape}-{}",
+                method.name,
+                spacing_name(spacing)
+            );
+            cases.push(Case::new(name, RULE, SOURCE, move |context| {
+                let model = Model::new(builtin(shape)?);
+                let cuts = LEVELS.map(|level| cut(level, spacing));
+                predicted(context, &model, method.name, &cuts)
+            }));
+        }
+    }
+    for (domain, spacing) in [Domain::Triangles, Domain::Quads]
+        .into_iter()
+        .flat_map(|domain| Spacing::ALL.map(|spacing| (domain, spacing)))
+    {
+        let modes = Modes::new(domain, spacing);
+        let name = format!(
+            "statistics.tessellator.{}-{}",
+            domain.name(),
+            spacing.name()
+        );
+        let rule = "a patch has the triangles that its levels construct";
+        let source = "Vulkan, Triangle Tessellation and Quad Tessellation";
+        let run = move |context: &Context| triangles(context, modes);
+        cases.push(Case::new(name, rule, source, run));
+    }
+    cases
+}
+
+fn model_cases(name: &str) -> Vec<Case> {
+    SPACINGS
+        .map(|spacing| {
+            let model = name.to_owned();
+            let name = format!("statistics.model.{name}-{}", spacing_name(spacing));
+            Case::new(name, RULE, SOURCE, move |context| {
+                let found = context.models.iter().find(|(name, _)| *name == model);
+                let (_, model) =
+                    found.ok_or_else(|| Error::Refused(format!("there is no {model}")))?;
+                let cuts = [1.0, 3.0, 8.0].map(|level| cut(level, spacing));
+                predicted(context, model, "quadtree", &cuts)
+            })
+        })
+        .into()
+}
+
+/// One patch a quad, one a corner of an n-gon; none in holes.
+fn patches(model: &Model) -> u64 {
+    let faces = model.mesh().faces().enumerate();
+    let drawn = faces.filter(|&(face, _)| !model.topology().is_hole(face as u32));
+    drawn
+        .map(|(_, vertices)| match vertices.len() {
+            4 => 1,
+            n => n as u64,
+        })
+        .sum()
+}
+
+fn predicted(context: &Context, model: &Model, method: &str, cuts: &[Cut]) -> Result<Finding> {
+    let mut check = Check::default();
+    let mut work = [0; 3];
+    for &cut in cuts {
+        let prepared = prepare(model, method)?;
+        let points = over_patches(&prepared, |pass, patch| {
+            cut.points(&prepared.passes[pass], patch)
+        });
+        let triangles = over_patches(&prepared, |pass, patch| {
+            let levels = cut.levels(&prepared.passes[pass], patch);
+            levels.triangles(cut.spacing)
+        });
+        let patches = patches(model) + u64::from(context.is_wrong());
+        let evaluations = u64::from(vertices(&prepared, cut));
+        let right = [patches, evaluations, u64::from(triangles)];
+        let frame = captured(context, model, prepared, cut, Fill::Solid)?;
+        let Some(counted) = frame.statistics else {
+            return Ok(Finding::skip("the device has no pipelineStatisticsQuery"));
+        };
+        check_counts(&mut check, cut, counted, right);
+        check.hold(frame.counters.points >= points, || {
+            format!(
+                "{cut:?}: {} stencils, fewer than {points}",
+                frame.counters.points
+            )
+        });
+        work = std::array::from_fn(|i| work[i] + counted[i]);
+    }
+    let [patches, evaluations, triangles] = work;
+    Ok(check.finish(format!(
+        "{patches} patches, {evaluations} evaluations, {triangles} triangles at {} levels",
+        cuts.len()
+    )))
+}
+
+/// Shaders may run more often than once a patch or vertex (Vulkan, "Tessellation Evaluation Shader Execution"); primitives are exact.
+fn check_counts(check: &mut Check, cut: Cut, counted: [u64; 3], right: [u64; 3]) {
+    let at_least = counted[0] >= right[0] && counted[1] >= right[1];
+    check.hold(at_least && counted[2] == right[2], || {
+        format!(
+            "{cut:?}: counted {counted:?} patches, evaluations and triangles, predicted {right:?}"
+        )
+    });
+}
+
+/// The triangles of a patch whose levels are all the same: one ring inside the other, each as many as both of its edges have segments.
+fn triangle_count(domain: Domain, segments: u32) -> u64 {
+    let n = u64::from(segments);
+    match domain {
+        Domain::Quads => 2 * n * n,
+        // n segments a side and n - 2 inside make 3 (2 n - 2); the middle is one triangle for odd n.
+        _ => {
+            let rings = (0..n / 2).map(|ring| 3 * (2 * (n - 2 * ring) - 2));
+            rings.sum::<u64>() + n % 2
+        }
+    }
+}
+
+fn triangles(context: &Context, modes: Modes) -> Result<Finding> {
+    let most = context.device()?.limits().max_tessellation_generation_level as f32;
+    let mut check = Check::default();
+    let mut counted_all = 0;
+    for level in [
+        1.0, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 13.0, 31.0, 32.0, 63.0, 64.0,
+    ] {
+        let table = [TessLevels::uniform(level)];
+        let shot = shoot(context, modes, &table, Raster::Solid)?;
+        let Some(counted) = shot.primitives else {
+            return Ok(Finding::skip("the device has no pipelineStatisticsQuery"));
+        };
+        let segments = segments(modes.spacing, level, most);
+        let right = triangle_count(modes.domain, segments) + u64::from(context.is_wrong());
+        check.hold(counted == right, || {
+            format!("level {level}: {counted} triangles instead of {right}")
+        });
+        counted_all += counted;
+    }
+    Ok(check.finish(format!("{counted_all} triangles")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_are_counted_by_rings() {
+        let counts = [1, 2, 3, 4, 5].map(|n| triangle_count(Domain::Triangles, n));
+        assert_eq!(counts, [1, 6, 13, 24, 37]);
+        assert_eq!(triangle_count(Domain::Quads, 3), 18);
+    }
+}

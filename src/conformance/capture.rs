@@ -291,7 +291,8 @@ impl Loaded<'_> {
                     Ok(())
                 })
             })?;
-        let (captured, differing) = self.captured()?;
+        let expected = batches.iter().map(|batch| batch.vertices).sum();
+        let (captured, differing) = self.captured(expected)?;
         Ok(Frame {
             passes: vec![captured],
             counters: self.surface().counters(),
@@ -340,10 +341,10 @@ impl Loaded<'_> {
 
     /// The captured vertices in order, each once, and how many came again with other bits: an evaluation shader may run more than once
     /// a vertex.
-    fn captured(&self) -> Result<(Vec<Captured>, usize)> {
+    fn captured(&self, expected: u32) -> Result<(Vec<Captured>, usize)> {
         let mut vertices = self.surface().captured().to_vec();
-        let room = self.options.capture_vertices as usize;
-        if room > 0 && vertices.len() >= room {
+        let room = self.options.capture_vertices;
+        if room > expected && vertices.len() >= room as usize {
             return Err(Error::Refused(format!(
                 "more than {room} vertices came: the device runs evaluation shaders far too often"
             )));

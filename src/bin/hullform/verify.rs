@@ -270,11 +270,7 @@ fn jobs(arguments: &Arguments) -> usize {
 
 /// The command line of a worker.
 fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<String>> {
-    let program = std::env::current_exe().map_err(|source| Error::File {
-        path: "this program".into(),
-        source,
-    })?;
-    let mut words: Vec<String> = vec![program.display().to_string(), "verify".into()];
+    let mut words: Vec<String> = vec![this_program()?, "verify".into()];
     words.push("--worker".into());
     words.push(format!("--seed={}", arguments.seed));
     words.push(format!("--ring-bytes={}", global.ring_bytes));
@@ -296,6 +292,16 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<String>> {
     words.push("--".into());
     words.extend(arguments.models.iter().cloned());
     Ok(words)
+}
+
+/// Where this program is; without `/proc`, as in some containers, what it was called by.
+fn this_program() -> Result<String> {
+    let path = std::env::current_exe().ok();
+    let called = || std::env::args_os().next().map(PathBuf::from);
+    let path = path.or_else(called).ok_or_else(|| {
+        Error::Refused("this program cannot find itself, to start its workers".into())
+    })?;
+    Ok(path.display().to_string())
 }
 
 fn command(words: &[String]) -> Command {

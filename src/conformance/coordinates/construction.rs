@@ -76,16 +76,19 @@ fn compare(
     for (levels, patch) in table.iter().zip(&shot.patches) {
         let right = constructed(modes, levels, cuts, most);
         let found: Vec<DVec3> = patch.keys().map(point).collect();
-        check.hold(right.len() == found.len(), || {
-            format!(
-                "{levels:?}: {} vertices instead of {}",
-                found.len(),
-                right.len()
-            )
-        });
         let barely = modes.spacing == Spacing::FractionalOdd
             && levels.inner(modes.domain).iter().any(|&inner| inner <= 1.0);
-        // How small "barely divided" is nobody says.
+        // How small "barely divided" is nobody says; in fixed point inner vertices may lie where those of the edge do.
+        check.hold(
+            found.len() == right.len() || barely && found.len() < right.len(),
+            || {
+                format!(
+                    "{levels:?}: {} vertices instead of {}",
+                    found.len(),
+                    right.len()
+                )
+            },
+        );
         let tolerance = if barely { 0.01 } else { TOLERANCE };
         for (from, to, what) in [(&right, &found, "missing"), (&found, &right, "surplus")] {
             let (off, place) = farthest(from, to);

@@ -67,7 +67,7 @@ const RULES: [Rule; 13] = [
         name: "lengths",
         rule: "all segments of an edge are equal, but for two of fractional spacing, which lie symmetrically and grow with the level",
         source: "Vulkan, Tessellator Spacing",
-        check: rules::lengths_check,
+        check: rules::lengths,
         concerns: all,
     },
     Rule {

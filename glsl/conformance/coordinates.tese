@@ -23,5 +23,4 @@ void main() {
     if (place < room) recorded[place] = Coordinate(in_patch, gl_TessCoord);
     out_patch = in_patch;
     gl_Position = vec4(2.0 * gl_TessCoord.xy - 1.0, 0.0, 1.0);
-    gl_PointSize = 1.0;
 }

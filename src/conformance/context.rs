@@ -9,7 +9,7 @@ use glob::Pattern;
 use crate::conformance::capture::Bench;
 use crate::conformance::random::Random;
 use crate::error::{Error, Result};
-use crate::gpu::{Slots, Workaround};
+use crate::gpu::{ExtraFeatures, Slots, Workaround};
 use crate::host::{Device, Instance};
 use crate::mesh::Model;
 
@@ -114,6 +114,7 @@ pub struct Context {
     bench: OnceCell<Bench>,
     robust_bench: OnceCell<Bench>,
     device: OnceCell<Device>,
+    memory_model_device: OnceCell<Device>,
     wrong: Cell<bool>,
 }
 
@@ -127,15 +128,14 @@ impl Context {
             bench: OnceCell::new(),
             robust_bench: OnceCell::new(),
             device: OnceCell::new(),
+            memory_model_device: OnceCell::new(),
             wrong: Cell::new(false),
         })
     }
 
     /// The device.
     pub fn device(&self) -> Result<&Device> {
-        opened(&self.device, || {
-            Device::open(&self.instance, self.settings.device.as_deref())
-        })
+        opened(&self.device, || self.open(ExtraFeatures::default()))
     }
 
     /// The device with what our surfaces share.
@@ -146,9 +146,26 @@ impl Context {
     /// The same with robust buffer access: on a logical device of its own.
     pub(super) fn robust_bench(&self) -> Result<&Bench> {
         opened(&self.robust_bench, || {
-            let selector = self.settings.device.as_deref();
-            Bench::new(&Device::open_robust(&self.instance, selector)?)
+            let extra = ExtraFeatures {
+                robust_buffer_access: true,
+                ..Default::default()
+            };
+            Bench::new(&self.open(extra)?)
         })
+    }
+
+    /// The device with the Vulkan memory model: a logical device of its own.
+    pub fn memory_model_device(&self) -> Result<&Device> {
+        opened(&self.memory_model_device, || {
+            self.open(ExtraFeatures {
+                vulkan_memory_model: true,
+                ..Default::default()
+            })
+        })
+    }
+
+    fn open(&self, extra: ExtraFeatures) -> Result<Device> {
+        Device::open_with(&self.instance, self.settings.device.as_deref(), extra)
     }
 
     /// The workarounds for our own surfaces.

@@ -52,8 +52,11 @@ const FORMS: [Form; 8] = [
     form("restrict", GLSL),
     form("one-way", GLSL),
     form("atomic", GLSL),
-    form("memory-model", MODEL),
+    form(MEMORY_MODEL, MODEL),
 ];
+
+/// The form that needs a feature.
+const MEMORY_MODEL: &str = "memory-model";
 
 const fn form(name: &'static str, source: &'static str) -> Form {
     Form { name, source }
@@ -84,14 +87,18 @@ struct Bed<'a> {
 /// A device without the memory model cannot run that form.
 fn lacks(context: &Context, form: Form) -> Result<Option<Finding>> {
     let support = context.device()?.info().support;
-    let lacks = form.name == "memory-model" && !support.optional.vulkan_memory_model;
-    Ok(lacks.then(|| Finding::skip("the device has no vulkanMemoryModel")))
+    let lacks = form.name == MEMORY_MODEL && !support.vulkan_memory_model;
+    Ok(lacks.then(|| Finding::skip("the device has no vulkanMemoryModelDeviceScope")))
 }
 
 impl Bed<'_> {
     fn new(context: &Context, form: Form, invocations: u32, room: u32) -> Result<Bed<'_>> {
         let sizes = [u64::from(4 * room), u64::from(4 * BATCHES), 24];
-        let mut raw = Raw::new(context.device()?, &sizes, 16)?;
+        let device = match form.name {
+            MEMORY_MODEL => context.memory_model_device()?,
+            _ => context.device()?,
+        };
+        let mut raw = Raw::new(device, &sizes, 16)?;
         let control = module(&format!("visibility-{}.tesc", form.name))?;
         let pipeline = raw.pipeline(&Program {
             control: Cow::Owned(with_invocations(control, invocations)),

@@ -16,7 +16,17 @@ pub struct OptionalFeatures {
     pub sample_rate_shading: bool,
     /// `maintenance4`, from Vulkan 1.3 or `VK_KHR_maintenance4`: shader interfaces of unequal width may be linked.
     pub maintenance4: bool,
-    /// Shaders that speak the Vulkan memory model (`vulkanMemoryModel`): only the conformance suite has such.
+}
+
+/// Features that are there on request: our own shaders use none of them, the conformance suite does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExtraFeatures {
+    /// Reads and writes beyond a buffer's end do no harm (`robustBufferAccess`). Every device has it; some are slower with it.
+    pub robust_buffer_access: bool,
+    /// Shaders may speak the Vulkan memory model (`vulkanMemoryModel`), for atomic operations as well (`vulkanMemoryModelDeviceScope`).
+    ///
+    /// With the first of the two alone our shaders are not valid: their atomic operations have device scope
+    /// (VUID-RuntimeSpirv-vulkanMemoryModel-06265).
     pub vulkan_memory_model: bool,
 }
 
@@ -35,6 +45,8 @@ pub struct Support {
     pub scalar_block_layout: bool,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
+    /// Whether [`ExtraFeatures::vulkan_memory_model`] can be asked for.
+    pub vulkan_memory_model: bool,
     /// `maintenance4` comes from an extension that has to be named, as the device is below Vulkan 1.3.
     pub maintenance4_by_extension: bool,
 }
@@ -120,10 +132,6 @@ impl Support {
             optional.pipeline_statistics_query,
         );
         set(&mut core.sample_rate_shading, optional.sample_rate_shading);
-        set(
-            &mut vulkan12.vulkan_memory_model,
-            optional.vulkan_memory_model,
-        );
     }
 
     /// # Safety
@@ -155,8 +163,9 @@ impl Support {
             pipeline_statistics_query: core.pipeline_statistics_query != 0,
             sample_rate_shading: core.sample_rate_shading != 0,
             maintenance4: maintenance4.maintenance4 != 0,
-            vulkan_memory_model: model.vulkan_memory_model != 0,
         };
+        self.vulkan_memory_model =
+            model.vulkan_memory_model != 0 && model.vulkan_memory_model_device_scope != 0;
         self.maintenance4_by_extension = by_extension && self.optional.maintenance4;
     }
 }
@@ -182,9 +191,12 @@ impl FeatureChain {
         }
     }
 
-    /// Switches `robustBufferAccess` on as well, which every device has: reads and writes beyond a buffer's end do no harm then.
-    pub fn with_robust_buffer_access(mut self) -> FeatureChain {
-        self.core.features.robust_buffer_access = vk::TRUE;
+    /// Switches on what is asked for beyond that; the device must have it.
+    pub fn with(mut self, extra: ExtraFeatures) -> FeatureChain {
+        self.core.features.robust_buffer_access |= vk::Bool32::from(extra.robust_buffer_access);
+        let model = vk::Bool32::from(extra.vulkan_memory_model);
+        self.vulkan12.vulkan_memory_model |= model;
+        self.vulkan12.vulkan_memory_model_device_scope |= model;
         self
     }
 

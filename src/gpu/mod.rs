@@ -20,7 +20,7 @@ pub use buffer::Buffer;
 pub(crate) use call::failed;
 pub use draw::{Counters, View};
 pub use driver::{Driver, Version};
-pub use features::{FeatureChain, OptionalFeatures, Support};
+pub use features::{ExtraFeatures, FeatureChain, OptionalFeatures, Support};
 pub use layout::Layout;
 pub use pipeline::{Fill, Pipelines, Target};
 pub use surface::{Slots, SurfaceOptions, TessellatedSurface};

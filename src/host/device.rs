@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::features::has_extension;
-use crate::gpu::{FeatureChain, failed};
+use crate::gpu::{ExtraFeatures, FeatureChain, failed};
 use crate::host::Instance;
 use crate::host::choice::{DeviceInfo, choose, devices};
 use ash::{khr, vk};
@@ -48,24 +48,24 @@ impl Device {
     /// # Errors
     /// [`Error::NoDevice`] says what each device lacks.
     pub fn open(instance: &Instance, selector: Option<&str>) -> Result<Device> {
-        Device::open_with(instance, selector, false)
+        Device::open_with(instance, selector, ExtraFeatures::default())
     }
 
-    /// As [`Device::open`], with `robustBufferAccess`: shaders that read or write beyond a buffer's end do no harm. Slower on some devices.
+    /// As [`Device::open`], with features that nothing here needs.
     ///
     /// # Errors
-    /// As [`Device::open`].
-    pub fn open_robust(instance: &Instance, selector: Option<&str>) -> Result<Device> {
-        Device::open_with(instance, selector, true)
-    }
-
-    fn open_with(instance: &Instance, selector: Option<&str>, robust: bool) -> Result<Device> {
+    /// As [`Device::open`]; [`Error::Vulkan`] when the device lacks one of them.
+    pub fn open_with(
+        instance: &Instance,
+        selector: Option<&str>,
+        extra: ExtraFeatures,
+    ) -> Result<Device> {
         let info = choose(&devices(instance)?, selector)?;
         tracing::info!(device = info.name, driver = info.driver.info, "opened");
         let family = info.support.graphics_family;
         let family = family.expect("a suitable device has a graphics queue");
         let logical = Logical {
-            raw: create(instance, &info, family, robust)?,
+            raw: create(instance, &info, family, extra)?,
             instance: instance.clone(),
         };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -238,7 +238,7 @@ fn create(
     instance: &Instance,
     info: &DeviceInfo,
     family: u32,
-    robust: bool,
+    extra: ExtraFeatures,
 ) -> Result<ash::Device> {
     let mut extensions = info.support.extensions();
     // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
@@ -254,10 +254,7 @@ fn create(
     let create = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions);
-    let mut features = FeatureChain::new(&info.support);
-    if robust {
-        features = features.with_robust_buffer_access();
-    }
+    let mut features = FeatureChain::new(&info.support).with(extra);
     // SAFETY: `choose` returns devices that lack nothing; `create` names the extensions and has no features yet.
     let create = unsafe { features.chain(create) };
     // SAFETY: the device was listed by this live instance; all that `create` points to lives through the call.

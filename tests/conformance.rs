@@ -1,0 +1,279 @@
+//! `hullform verify`: it finds seeded faults in every group, survives crashes and hangs, and says what it found in every format.
+//!
+//! The whole suite takes a minute and is not run here: a part of each group is.
+#![cfg(feature = "cli")]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use common::cli::{fails, has_device, run, stderr, stdout};
+use serde_json::Value;
+
+/// A part of each group that is quick and whose cases no driver is known to fail.
+const PARTS: [&str; 10] = [
+    "coordinates.quads-equal.*",
+    "coordinates.triangles-fractional_odd.*",
+    "limit.valence.boundary-[1-5]",
+    "limit.kind.*-equal",
+    "scale.*.draw-1025_patches-*-from_70000",
+    "scale.vertices_per_batch.*-1023_patches-*",
+    "visibility.coherent.*",
+    "determinism.*.ngons-equal",
+    "statistics.*.*s-equal",
+    "robustness.*.quads-*",
+];
+
+/// Runs the suite and returns the statuses by name, from the CSV.
+fn statuses(arguments: &[&str], code: i32) -> BTreeMap<String, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let csv = folder.path().join("results.csv");
+    let csv = csv.to_str().expect("a plain name");
+    let output = run(&[&["verify", "--csv", csv], arguments].concat());
+    let words = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {words}");
+    let text = std::fs::read_to_string(csv).expect("results were written");
+    let read = |line: &str| {
+        let [name, status, seconds] = line.split(',').collect::<Vec<_>>()[..] else {
+            panic!("{line}: three columns");
+        };
+        assert!(seconds.parse::<f64>().expect("seconds are a number") >= 0.0);
+        (name.to_owned(), status.to_owned())
+    };
+    text.lines().map(read).collect()
+}
+
+fn all_are(statuses: &BTreeMap<String, String>, wanted: &str) {
+    assert!(!statuses.is_empty());
+    for (name, status) in statuses {
+        assert_eq!(status, wanted, "{name}");
+    }
+}
+
+#[test]
+fn a_part_of_each_group_passes_under_validation() {
+    if !has_device() {
+        return;
+    }
+    for part in PARTS {
+        all_are(&statuses(&["--validation", "--filter", part], 0), "Pass");
+    }
+}
+
+#[test]
+fn a_seeded_fault_is_caught_in_every_group() {
+    if !has_device() {
+        return;
+    }
+    for part in PARTS {
+        let found = statuses(&["--fault", "wrong:*", "--filter", part], 1);
+        all_are(&found, "Fail");
+    }
+}
+
+#[test]
+fn odd_levels_draws_and_meshes_are_caught_as_well() {
+    if !has_device() {
+        return;
+    }
+    for part in [
+        "robustness.empty.*",
+        "robustness.mesh.one_*",
+        "robustness.corrupted.weights-*",
+    ] {
+        let found = statuses(&["--fault", "wrong:*", "--filter", part], 1);
+        all_are(&found, "Fail");
+    }
+}
+
+const PART: &str = "coordinates.isolines-equal.*";
+const VICTIM: &str = "coordinates.isolines-equal.counts";
+
+/// Every case but the victim passes.
+fn others_pass(mut statuses: BTreeMap<String, String>, victim: &str) {
+    assert_eq!(statuses.remove(VICTIM).as_deref(), Some(victim));
+    assert!(statuses.len() > 5);
+    all_are(&statuses, "Pass");
+}
+
+#[test]
+fn a_crash_ends_its_case_and_not_the_suite() {
+    if !has_device() {
+        return;
+    }
+    let fault = format!("crash:{VICTIM}");
+    let found = statuses(&["--filter", PART, "--fault", &fault], 1);
+    others_pass(found, "Crash");
+}
+
+#[test]
+fn a_hang_ends_its_case_and_not_the_suite() {
+    if !has_device() {
+        return;
+    }
+    let fault = format!("hang:{VICTIM}");
+    let arguments = ["--filter", PART, "--fault", &fault, "--time-limit", "8"];
+    others_pass(statuses(&arguments, 1), "Timeout");
+}
+
+#[test]
+fn repetitions_that_differ_are_a_flake() {
+    if !has_device() {
+        return;
+    }
+    let fault = format!("flicker:{VICTIM}");
+    let arguments = ["--filter", PART, "--fault", &fault, "--repeat", "3"];
+    others_pass(statuses(&arguments, 1), "Flake");
+    let quiet = ["--filter", PART, "--repeat", "3", "--jobs", "1"];
+    all_are(&statuses(&quiet, 0), "Pass");
+}
+
+fn written(folder: &Path, text: &str) -> String {
+    let path = folder.join("expectations.txt");
+    std::fs::write(&path, text).expect("a file");
+    path.to_str().expect("a plain name").to_owned()
+}
+
+#[test]
+fn expectations_decide_what_is_unexpected() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let row = format!("{VICTIM} Fail it is a test");
+    let list = written(folder.path(), &row);
+    let part = ["--filter", PART, "--expectations", &list];
+    others_pass(statuses(&part, 1), "UnexpectedImprovement");
+    let fault = format!("wrong:{VICTIM}");
+    let faulty = [&part[..], &["--fault", &fault]].concat();
+    others_pass(statuses(&faulty, 0), "ExpectedFail");
+    // A crash is not the failure that was expected.
+    let fault = format!("crash:{VICTIM}");
+    let crashing = [&part[..], &["--fault", &fault]].concat();
+    others_pass(statuses(&crashing, 1), "Crash");
+}
+
+#[test]
+fn a_list_that_makes_no_sense_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let list = written(folder.path(), "# fine\ncoordinates.* Fial why");
+    if has_device() {
+        let words = fails(&["verify", "--expectations", &list], 2);
+        assert!(words.contains("expectations.txt:2: "), "{words}");
+        let words = fails(&["verify", "--expectations", "/no/such/file"], 2);
+        assert!(words.contains("/no/such/file"), "{words}");
+    }
+}
+
+#[test]
+fn json_and_junit_tell_the_same() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| {
+        let path = folder.path().join(name);
+        path.to_str().expect("a plain name").to_owned()
+    };
+    let (json, junit) = (place("results.json"), place("results.xml"));
+    let fault = format!("wrong:{VICTIM}");
+    let output = run(&[
+        "verify", "--filter", PART, "--json", &json, "--junit", &junit, "--fault", &fault,
+        "--seed", "7",
+    ]);
+    assert_eq!(output.status.code(), Some(1));
+    // One line for the failure, on stderr; the summary on stdout.
+    let words = stderr(&output);
+    assert_eq!(
+        words.matches(&format!("Fail {VICTIM}: ")).count(),
+        1,
+        "{words}"
+    );
+    assert!(stdout(&output).contains("Fail 1"));
+    let read: Value =
+        serde_json::from_str(&std::fs::read_to_string(json).expect("written")).expect("JSON");
+    let results = read["results"].as_array().expect("a list");
+    assert_eq!(read["unexpected"], 1);
+    assert_eq!(read["seed"], 7);
+    for result in results {
+        for key in ["name", "status", "rule", "source", "measured"] {
+            let text = result[key].as_str().expect("a text");
+            assert!(!text.is_empty(), "{result}");
+        }
+    }
+    let xml = std::fs::read_to_string(junit).expect("written");
+    assert!(xml.starts_with("<?xml"));
+    assert_eq!(xml.matches("<testcase ").count(), results.len());
+    assert_eq!(xml.matches("<failure ").count(), 1);
+    // Nothing half-written stays.
+    assert_eq!(
+        std::fs::read_dir(folder.path()).expect("a folder").count(),
+        2
+    );
+}
+
+#[test]
+fn json_without_a_file_is_printed() {
+    if !has_device() {
+        return;
+    }
+    for arguments in [
+        ["verify", "--filter", PART, "--json"],
+        ["--json", "verify", "--filter", PART],
+    ] {
+        let output = run(&arguments);
+        let read: Value = serde_json::from_str(&stdout(&output)).expect("JSON alone");
+        assert_eq!(read["unexpected"], 0);
+    }
+}
+
+#[test]
+fn lists_and_filters() {
+    let all = stdout(&run(&["verify", "--list"]));
+    assert!(all.lines().count() > 300);
+    let some = stdout(&run(&[
+        "verify",
+        "--list",
+        "--filter",
+        "visibility.*.batches",
+    ]));
+    assert!(some.lines().all(|line| line.starts_with("visibility.")));
+    assert!(some.lines().count() > 3 && some.lines().all(|line| all.contains(line)));
+    let output = run(&["verify", "--list", "--json", "--filter", "scale.*"]);
+    let read: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert!(read["cases"][0]["rule"].as_str().is_some());
+    let words = fails(&["verify", "--filter", "no.such.*"], 2);
+    assert!(words.contains("no case matches 'no.such.*'"), "{words}");
+}
+
+#[test]
+fn meshes_of_the_user_are_verified() {
+    if !has_device() {
+        return;
+    }
+    let found = statuses(&["builtin:cube", "builtin:ngons"], 0);
+    all_are(&found, "Pass");
+    for start in ["limit.model.cube", "statistics.model.ngons"] {
+        assert!(found.keys().any(|name| name.starts_with(start)), "{start}");
+    }
+    let words = fails(&["verify", "/no/such.obj"], 2);
+    assert!(words.contains("/no/such.obj"), "{words}");
+}
+
+#[test]
+fn files_that_cannot_be_written_are_known_before_the_work() {
+    for option in ["--csv", "--json", "--junit"] {
+        let words = fails(&["verify", option, "/no/such/folder/file"], 2);
+        assert!(
+            words.starts_with("hullform: /no/such/folder/file: "),
+            "{words}"
+        );
+    }
+}
+
+#[test]
+fn without_a_suitable_device_nothing_runs() {
+    let words = fails(&["verify", "--device", "no such device"], 3);
+    assert!(words.contains("no suitable Vulkan device"), "{words}");
+}

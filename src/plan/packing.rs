@@ -61,6 +61,11 @@ impl PackedPlans {
                 self.list(&levels.concat()),
                 0.0,
             ),
+            Node::Curve {
+                points,
+                end,
+                sharpness,
+            } => (*end, 0, self.list(points), *sharpness),
             Node::Extraordinary { corner } => (*corner, 0, 0, 0.0),
         };
         abi::Node {

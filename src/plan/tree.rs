@@ -21,7 +21,7 @@ pub enum NodeKind {
 /// A node of the quadtree. Points are numbers of the plan's stencils.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// Four children x + 2 y from this node on.
+    /// Four children x + 2 y from this node on; of an edge, two.
     Internal {
         /// The first child.
         children: u32,
@@ -49,7 +49,16 @@ pub enum Node {
         /// For each level 5 x 5 points, number x + 5 y; the one beyond the extraordinary vertex is missing and stands as 0.
         levels: Vec<[u32; 25]>,
     },
-    /// The extraordinary vertex at `corner`.
+    /// A stretch of an edge, in the plan of an edge.
+    Curve {
+        /// Four control points of the position, then four of the derivative across, for each side that has its own.
+        points: Vec<u32>,
+        /// The end, 0 or 1, at which a semi-sharp crease crosses the edge.
+        end: u32,
+        /// The sharpness that is left there at this node's level; 0 without a crease.
+        sharpness: f32,
+    },
+    /// The extraordinary vertex at `corner`; of an edge, at the end `corner`.
     Extraordinary {
         /// The corner, 0..=3, both of the node and of the face.
         corner: u32,
@@ -65,7 +74,8 @@ impl Node {
                 mirrored: false, ..
             } => NodeKind::Regular,
             Node::Regular { mirrored: true, .. } => NodeKind::Boundary,
-            Node::Crease { .. } => NodeKind::Crease,
+            Node::Curve { sharpness, .. } if *sharpness == 0.0 => NodeKind::Regular,
+            Node::Crease { .. } | Node::Curve { .. } => NodeKind::Crease,
             Node::Terminal { .. } => NodeKind::Terminal,
             Node::Extraordinary { .. } => NodeKind::Extraordinary,
         }

@@ -12,7 +12,7 @@ use crate::plan::level::Level;
 use crate::plan::rows::Rows;
 use crate::plan::span::Span;
 use crate::plan::tree::Node;
-use crate::subdivision::{EdgeCurve, edge_curve};
+use crate::subdivision::{EdgeCurve, Mask, edge_curve};
 
 /// Which edge of a configuration is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -70,6 +70,13 @@ impl EdgePlan {
         let edge = base.topology.face_edges(0)[corner];
         let sides = base.topology.edge_faces(edge).to_vec();
         let sharp = is_infinite(base.topology.edge(edge).sharpness);
+        // The patches of an n-gon have half of an edge each.
+        let halved = |&face: &u32| base.topology.face(face).len() != 4;
+        let deeper = u32::from(sides.iter().any(halved));
+        let options = PlanOptions {
+            max_level: options.max_level + deeper,
+            ..options
+        };
         let stretch = Stretch {
             edge,
             from: base.topology.face(0)[corner],
@@ -136,17 +143,22 @@ impl Builder {
 
     fn leaf(&mut self, level: &Level, curve: &EdgeCurve, span: Span) -> Node {
         let required = span.required_level(self.options.max_level);
-        let masks = curve.position.iter().chain(curve.across.iter().flatten());
-        let points = masks.map(|mask| {
-            self.rows.push(mask, &level.rows);
-            self.levels.push(required);
-            self.rows.len() as u32 - 1
-        });
+        let mut row = |masks: &[Mask; 4]| {
+            let first = self.rows.len() as u32;
+            for mask in masks {
+                self.rows.push(mask, &level.rows);
+                self.levels.push(required);
+            }
+            [0, 1, 2, 3].map(|x| first + x)
+        };
+        let position = row(&curve.position);
+        let sides = curve.beside.iter().map(&mut row);
+        let points = sides.flat_map(|beside| [position, position, beside, beside].concat());
         let points = points.collect();
         let (end, sharpness) = curve.crossing.unwrap_or_default();
         Node::Curve {
             points,
-            end,
+            edge: [3, 1][end as usize],
             sharpness,
         }
     }

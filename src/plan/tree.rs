@@ -16,6 +16,8 @@ pub enum NodeKind {
     Terminal = 4,
     /// An extraordinary vertex, evaluated nowhere but there.
     Extraordinary = 5,
+    /// A stretch of an edge.
+    Curve = 6,
 }
 
 /// A node of the quadtree. Points are numbers of the plan's stencils.
@@ -49,12 +51,13 @@ pub enum Node {
         /// For each level 5 x 5 points, number x + 5 y; the one beyond the extraordinary vertex is missing and stands as 0.
         levels: Vec<[u32; 25]>,
     },
-    /// A stretch of an edge, in the plan of an edge.
+    /// A stretch of an edge, in the plan of an edge: a B-spline whose row 1 is the position along the edge, and row 2 that plus the derivative
+    /// across. The other rows have no weight.
     Curve {
-        /// Four control points of the position, then four of the derivative across, for each side that has its own.
+        /// Sixteen points for each side that has its own derivative, number x + 4 y.
         points: Vec<u32>,
-        /// The end, 0 or 1, at which a semi-sharp crease crosses the edge.
-        end: u32,
+        /// The edge of the B-spline, 3 or 1, along which a semi-sharp crease crosses at the stretch's beginning or end.
+        edge: u32,
         /// The sharpness that is left there at this node's level; 0 without a crease.
         sharpness: f32,
     },
@@ -74,8 +77,8 @@ impl Node {
                 mirrored: false, ..
             } => NodeKind::Regular,
             Node::Regular { mirrored: true, .. } => NodeKind::Boundary,
-            Node::Curve { sharpness, .. } if *sharpness == 0.0 => NodeKind::Regular,
-            Node::Crease { .. } | Node::Curve { .. } => NodeKind::Crease,
+            Node::Crease { .. } => NodeKind::Crease,
+            Node::Curve { .. } => NodeKind::Curve,
             Node::Terminal { .. } => NodeKind::Terminal,
             Node::Extraordinary { .. } => NodeKind::Extraordinary,
         }

@@ -20,9 +20,9 @@ use crate::subdivision::regular::{ControlPoint, CornerPoints, corner_points};
 pub struct EdgeCurve {
     /// The control points of the position.
     pub position: [Mask; 4],
-    /// The control points of the derivative across; one set for an edge that is smooth or will become so, and one a side for an infinite crease.
-    /// The derivative along times this one points to where the faces' vertices run counter-clockwise.
-    pub across: Vec<[Mask; 4]>,
+    /// The control points of position plus derivative across; one set for an edge that is smooth or will become so, and one a side for an
+    /// infinite crease. The derivative along times the one across points to where the faces' vertices run counter-clockwise.
+    pub beside: Vec<[Mask; 4]>,
     /// A semi-sharp crease that crosses the edge at an end: 0 or 1, and its sharpness.
     pub crossing: Option<(u32, f32)>,
 }
@@ -35,31 +35,29 @@ struct Rows {
     creases: [Option<(bool, f32)>; 2],
 }
 
-/// The edge from `a` to `b` as a curve, or None when it has to be refined first. `sides` are all faces on it.
+/// The edge from `a` to its other end as a curve, or None when it has to be refined first. `sides` are all faces on it.
 pub fn edge_curve(topology: &Topology, edge: u32, a: u32, sides: &[u32]) -> Option<EdgeCurve> {
     let b = topology.edge(edge).other(a);
     let sharpness = topology.edge(edge).sharpness;
     if is_infinite(sharpness) {
         return sharp_curve(topology, a, b, sides);
     }
-    let forward = sides.iter().find_map(|&face| rows(topology, face, a, b));
-    let Rows { columns, creases } = forward?;
-    let (beside, crossing) = match creases {
-        [None, None] if !is_semi_sharp(sharpness) => (1.0 / 6.0, None),
-        [Some((false, crease)), None] if !is_semi_sharp(sharpness) => {
-            (1.0 / 6.0, Some((0, crease)))
-        }
-        [None, Some((false, crease))] if !is_semi_sharp(sharpness) => {
-            (1.0 / 6.0, Some((1, crease)))
-        }
-        [Some((true, first)), Some((true, second))] if first == second => {
-            (crease_basis(0.0f64, first).value[0], None)
+    let Rows { columns, creases } = sides.iter().find_map(|&face| rows(topology, face, a, b))?;
+    let smooth = !is_semi_sharp(sharpness);
+    let sixth = 1.0 / 6.0;
+    let (share, crossing) = match creases {
+        [None, None] if smooth => (sixth, None),
+        [Some((false, crease)), None] if smooth => (sixth, Some((0, crease))),
+        [None, Some((false, crease))] if smooth => (sixth, Some((1, crease))),
+        [Some((true, near)), Some((true, far))] if near == far => {
+            (crease_basis(0.0f64, near).value[0], None)
         }
         _ => return None,
     };
+    let middle = 1.0 - 2.0 * share;
     Some(EdgeCurve {
-        position: weighted(&columns, [beside, 1.0 - 2.0 * beside, beside]),
-        across: vec![weighted(&columns, [-0.5, 0.0, 0.5])],
+        position: weighted(&columns, [share, middle, share]),
+        beside: vec![weighted(&columns, [share - 0.5, middle, share + 0.5])],
         crossing,
     })
 }
@@ -67,35 +65,36 @@ pub fn edge_curve(topology: &Topology, edge: u32, a: u32, sides: &[u32]) -> Opti
 /// An infinite crease or a boundary: the crease's own B-spline, and the derivative across on each side.
 fn sharp_curve(topology: &Topology, a: u32, b: u32, sides: &[u32]) -> Option<EdgeCurve> {
     let mut position = None;
-    let mut across = Vec::with_capacity(sides.len());
+    let mut beside = Vec::with_capacity(sides.len());
     for &face in sides {
-        let forward = rows(topology, face, a, b);
-        let (columns, sign) = match forward {
-            Some(rows) => (rows.columns, 1.0),
+        // A face that runs the other way turns its derivative round.
+        let (columns, weights) = match rows(topology, face, a, b) {
+            Some(rows) => (rows.columns, [0.0, 0.0, 1.0]),
             None => {
                 let mut columns = rows(topology, face, b, a)?.columns;
                 columns.reverse();
-                (columns, -1.0)
+                (columns, [0.0, 2.0, -1.0])
             }
         };
-        across.push(weighted(&columns, [0.0, -sign, sign]));
+        beside.push(weighted(&columns, weights));
         position.get_or_insert_with(|| weighted(&columns, [0.0, 1.0, 0.0]));
     }
     Some(EdgeCurve {
         position: position?,
-        across,
+        beside,
         crossing: None,
     })
 }
 
 /// A weighted sum of the rows, column by column.
 fn weighted(columns: &[[ControlPoint; 3]; 4], weights: [f64; 3]) -> [Mask; 4] {
-    std::array::from_fn(|column| {
-        let rows = columns[column].iter().zip(weights);
-        rows.filter(|&(_, weight)| weight != 0.0)
+    columns.map(|rows| {
+        rows.into_iter()
+            .zip(weights)
+            .filter(|&(_, weight)| weight != 0.0)
             .flat_map(|(point, weight)| {
-                let scaled = point.mask().into_iter();
-                scaled.map(move |(vertex, share)| (vertex, weight * share))
+                let mask = point.mask().into_iter();
+                mask.map(move |(vertex, share)| (vertex, weight * share))
             })
             .collect()
     })
@@ -103,10 +102,7 @@ fn weighted(columns: &[[ControlPoint; 3]; 4], weights: [f64; 3]) -> [Mask; 4] {
 
 /// The rows beside the edge from `a` to `b` as seen from a quad whose vertices run that way; None for other faces and irregular ends.
 fn rows(topology: &Topology, face: u32, a: u32, b: u32) -> Option<Rows> {
-    let &[v0, v1, v2, v3] = topology.face(face) else {
-        return None;
-    };
-    let vertices = [v0, v1, v2, v3];
+    let vertices: [u32; 4] = topology.face(face).try_into().ok()?;
     let first = (0..4).find(|&i| vertices[i] == a && vertices[(i + 1) % 4] == b)?;
     let vertex = |i: usize| ControlPoint::Vertex(vertices[(first + i) % 4]);
     let at_a: CornerPoints = corner_points(topology, face, first as u32)?;

@@ -59,7 +59,7 @@ pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<Limi
 pub enum TangentPlane {
     /// All of them.
     Vertex,
-    /// Those of a sector between two infinite creases, which begins with this edge.
+    /// Those of a sector between two infinite creases, which begins with this face.
     Sector(u32),
     /// At a cusp each face has its own.
     Face(u32),
@@ -75,7 +75,7 @@ pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlan
     };
     match rule(topology.vertex_sharpness(vertex), sharp) {
         Rule::Smooth | Rule::Dart => TangentPlane::Vertex,
-        Rule::Crease if !ring.is_page() => TangentPlane::Sector(ring.fan.edges[0]),
+        Rule::Crease if !ring.is_page() => TangentPlane::Sector(ring.fan.faces[0]),
         Rule::Crease | Rule::Corner => TangentPlane::Face(face),
     }
 }

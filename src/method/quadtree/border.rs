@@ -411,7 +411,9 @@ impl Builder<'_> {
         plain: &Plain<'_>,
     ) {
         border.plans[number] = plan;
-        border.roots[number] = self.packed.headers[plan as usize].root;
+        if border.flags[number] & abi::USE_LIMIT == 0 {
+            border.roots[number] = self.packed.headers[plan as usize].root;
+        }
         let places = ring.vertices.iter().map(|vertex| plain.ring[vertex]);
         border.rings[number] = self.list(places.collect());
     }

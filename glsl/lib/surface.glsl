@@ -19,13 +19,13 @@ vec3 normalize_or_zero(vec3 v) {
 }
 
 // The tangents are made unit vectors first: far down a quadtree, and in tiny or enormous models, their product would leave that range.
-// Turning both tangents by the same quarters leaves every bit as it is, and so does no zero that is negative.
+// Turning both tangents by the same quarters leaves every bit as it is, once no zero is negative.
 vec3 surface_normal(Surface surface) {
     vec3 a = normalize_or_zero(surface.du);
     vec3 b = normalize_or_zero(surface.dv);
     precise vec3 normal = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-    precise vec3 unit = normalize_or_zero(normal) + vec3(0.0);
-    return unit;
+    vec3 unit = normalize_or_zero(normal);
+    return mix(unit, vec3(0.0), equal(unit, vec3(0.0)));
 }
 
 #endif

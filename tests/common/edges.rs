@@ -37,12 +37,15 @@ type Side = (u32, bool);
 /// Positions and normals along a line by the bits of where they are on it.
 type Along = BTreeMap<u32, (Vec3, Vec3)>;
 
+/// Position and normal that a face has at a corner.
+type AtCorner = ((u32, u32), Vec3, Vec3);
+
 /// Everything on lines and at vertices.
 pub struct Shared<'a> {
     model: &'a Model,
     numbers: LimitSurface,
     lines: BTreeMap<Line, BTreeMap<Side, Along>>,
-    vertices: BTreeMap<Vertex, Vec<((u32, u32), Vec3, Vec3)>>,
+    vertices: BTreeMap<Vertex, Vec<AtCorner>>,
 }
 
 /// How much was compared.
@@ -219,7 +222,7 @@ impl<'a> Shared<'a> {
         &self,
         what: &str,
         vertex: Vertex,
-        corners: &[((u32, u32), Vec3, Vec3)],
+        corners: &[AtCorner],
         compared: &mut Compared,
     ) {
         let mut planes: Vec<(TangentPlane, Vec3)> = Vec::new();

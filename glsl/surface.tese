@@ -40,8 +40,9 @@ vec2 texture_coordinates(uint number, vec2 uv) {
 }
 
 void main() {
-    vec2 uv = gl_TessCoord.xy;
-    Surface surface = evaluate_patch(patch_record(in_patch), in_slot, uv);
+    Patch record = patch_record(in_patch);
+    vec2 uv = shared_coordinates(record, patch_levels(record), gl_TessCoord.xy);
+    Surface surface = evaluate_patch(record, in_slot, uv);
     vec3 normal = surface_normal(surface);
     out_position = surface.position;
     out_normal = normal;

@@ -11,8 +11,6 @@
 const uint CONTROL_POINTS = 4u;
 #define CONTROL_VERTICES 4
 
-uint greatest_level(Patch record) { return HIGHEST_LEVEL; }
-
 #ifdef STAGE_VERTEX
 // Point i is the mean of some control vertices; four words tell where each point's end.
 vec3 control_point(Patch record, uint number) {

@@ -124,9 +124,9 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel.
+    /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel. No zero is negative.
     pub fn normal(&self) -> Vec3 {
-        normalized(normalized(self.du).cross(normalized(self.dv)))
+        normalized(normalized(self.du).cross(normalized(self.dv))) + Vec3::ZERO
     }
 }
 

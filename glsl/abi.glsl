@@ -38,6 +38,8 @@ const uint USE_FIRST_HALF = 2u;
 const uint USE_SECOND_HALF = 4u;
 // Use flag: limit position and tangents of a vertex.
 const uint USE_LIMIT = 8u;
+// Use flag: the limit has several normals there.
+const uint USE_CREASED = 64u;
 // Use flag: by how many quarters its frame is turned against the patch's; two bits.
 const uint USE_TURN_SHIFT = 4u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
@@ -172,6 +174,8 @@ struct Frame {
     uint counter;
     // Vertices that the capture holds.
     uint capture_vertices;
+    // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
+    vec2 displacement;
 };
 
 // A vertex as an evaluation shader produced it.

@@ -135,6 +135,8 @@ constants! {
     USE_SECOND_HALF = 4;
     /// Use flag: limit position and tangents of a vertex.
     USE_LIMIT = 8;
+    /// Use flag: the limit has several normals there.
+    USE_CREASED = 64;
     /// Use flag: by how many quarters its frame is turned against the patch's; two bits.
     USE_TURN_SHIFT = 4;
     /// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
@@ -276,6 +278,8 @@ structs! {
         counter: u32,
         /// Vertices that the capture holds.
         capture_vertices: u32,
+        /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
+        displacement: [f32; 2],
     }
 
     /// A vertex as an evaluation shader produced it.

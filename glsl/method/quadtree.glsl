@@ -107,6 +107,11 @@ Row scratch_row(uint first, uint number, Basis u) {
                        scratch_point(first, number + 3u));
 }
 
+// Not on infinite creases and at cusps.
+bool has_one_normal(Patch record, vec2 uv) {
+    return (borders[record.plan].flags[find_place(record.flags, uv).number] & USE_CREASED) == 0u;
+}
+
 // Row 1 is the position on an edge, row 2 that plus the derivative across.
 const Basis CURVE = Basis(vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, -1.0, 1.0, 0.0));
 

@@ -18,6 +18,8 @@ vec3 control_point(Patch record, uint number) { return control_vertex(controls[r
 #endif
 
 #ifdef STAGE_EVALUATION
+bool has_one_normal(Patch record, vec2 uv) { return true; }
+
 // On edges the sums go along the edge first, at corners along the direction that the vertex prefers: so all faces there get the same bits.
 Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint place = find_place(record.flags, uv).number;

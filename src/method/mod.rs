@@ -3,6 +3,7 @@
 //! A method is one file here, one in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the rows;
 //! nothing else names a method.
 
+mod displacement;
 mod flat;
 mod patches;
 mod quadtree;
@@ -14,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Model;
 use crate::plan::PlanOptions;
 
+pub use displacement::Displacement;
 pub use quadtree::PlanStatistics;
 
 /// The shape of a method's patches.

@@ -1,8 +1,9 @@
 //! No cracks between faces: both sides of an edge have the same vertices, bit by bit.
 
+use glam::Vec3;
 use hullform::gpu::{Cut, Fill};
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Prepared};
+use hullform::method::{Displacement, METHODS, Prepared};
 use hullform::plan::PlanOptions;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -73,6 +74,66 @@ fn shallow_plans_leave_no_t_junctions() {
         hold("shallow", &model, loaded.prepared(), &frame);
     }
     drop(loaded);
+    gpu.finish();
+}
+
+/// Displaced along the normal, a surface with creases, n-gons and a boundary is still whole, and moves as the CPU says.
+#[test]
+fn displaced_surfaces_have_no_cracks() {
+    let Some(gpu) = Gpu::open() else { return };
+    for name in ["hull", "ngons", "creased-torus", "sheet"] {
+        let model = shapes::built_in(name);
+        let prepared = (METHODS[0].prepare)(&model, PlanOptions::default()).expect("sound");
+        let cuts: Vec<Cut> = [3.0, 8.0]
+            .iter()
+            .flat_map(|&l| SPACINGS.map(|s| cut(l, s)))
+            .collect();
+        let workarounds = &gpu.device.info().workarounds;
+        let capturing = capturing(&prepared, &cuts);
+        let loaded = gpu.load(&model, prepared, workarounds, capturing);
+        let mut loaded = loaded.expect("the ring holds a patch");
+        for cut in cuts {
+            loaded.displacement = Displacement::default();
+            let smooth = loaded.capture(cut, Fill::Discard).expect("it is drawn");
+            let diagonal = crate::common::diagonal(model.mesh()) as f32;
+            loaded.displacement = Displacement {
+                height: 0.05 * diagonal,
+                frequency: 20.0 / diagonal,
+            };
+            let bumpy = loaded.capture(cut, Fill::Discard).expect("it is drawn");
+            hold(
+                &format!("{name} displaced"),
+                &model,
+                loaded.prepared(),
+                &bumpy,
+            );
+            let pairs = smooth
+                .passes
+                .iter()
+                .flatten()
+                .zip(bumpy.passes.iter().flatten());
+            let mut moved = 0;
+            for (before, after) in pairs {
+                let twin = loaded
+                    .displacement
+                    .displace(before.position.into(), before.normal.into());
+                let (position, normal) = (Vec3::from(after.position), Vec3::from(after.normal));
+                // Where the limit has several normals, points stay.
+                if after.position != before.position {
+                    assert!(
+                        position.distance(twin.0) <= 1e-6 * diagonal,
+                        "{name}: {before:?}, {after:?}"
+                    );
+                    assert!(
+                        normal.distance(twin.1) <= 1e-4,
+                        "{name}: {before:?}, {after:?}"
+                    );
+                    moved += 1;
+                }
+            }
+            assert!(moved > smooth.passes.iter().flatten().count() / 2, "{name}");
+        }
+    }
     gpu.finish();
 }
 

@@ -366,7 +366,9 @@ impl Builder<'_> {
                         Point::Vertex(_) => pairs[local.expect("the face has the vertex")],
                         Point::Centre(_) => pairs[0],
                     };
-                    border.flags[number] = abi::USE_LIMIT | pair << abi::USE_SIDE_SHIFT;
+                    let creased = pairs.iter().any(|&other| other != pairs[0]);
+                    let creased = if creased { abi::USE_CREASED } else { 0 };
+                    border.flags[number] = abi::USE_LIMIT | creased | pair << abi::USE_SIDE_SHIFT;
                     self.planned(
                         &mut border,
                         number,
@@ -398,8 +400,9 @@ impl Builder<'_> {
         let sides = &self.lines.plans[plan].sides;
         let local = |&side: &u32| ring.faces[side as usize] == face;
         let side = sides.iter().position(local).unwrap_or(0) as u32;
+        let creased = if sides.len() > 1 { abi::USE_CREASED } else { 0 };
         let flipped = self.topology.face(face)[corner as usize] != ring.vertices[0];
-        side << abi::USE_SIDE_SHIFT | if flipped { abi::USE_FLIPPED } else { 0 }
+        side << abi::USE_SIDE_SHIFT | creased | if flipped { abi::USE_FLIPPED } else { 0 }
     }
 
     fn planned(

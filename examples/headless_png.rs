@@ -25,7 +25,7 @@ use hullform::gpu::{
     TessellatedSurface, View, ring, workarounds,
 };
 use hullform::mesh::{DEFAULT_BUILTIN, Model, builtin, read_obj};
-use hullform::method::method;
+use hullform::method::{Displacement, method};
 use hullform::plan::PlanOptions;
 use hullform::{abi, tessellation::Spacing};
 
@@ -360,6 +360,7 @@ fn view(model: &Model) -> View {
             .transform_point3(Vec3::ZERO)
             .to_array(),
         shading: abi::SHADING_LIT,
+        displacement: Displacement::default(),
     }
 }
 

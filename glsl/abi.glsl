@@ -21,13 +21,31 @@ const uint BINDING_CAPTURE = 7u;
 // Set 0, binding: the first of a method's own tables.
 const uint BINDING_TABLES = 8u;
 // How many tables a method may have of its own.
-const uint TABLES = 4u;
+const uint TABLES = 5u;
 // Invocations of a control shader that runs stencils; also its greatest number of control points.
 const uint CONTROL_INVOCATIONS = 32u;
 // The deepest level of a plan.
 const uint HIGHEST_LEVEL = 10u;
-// Stencils in front of a plan that belong to its corners: position and two tangents each.
-const uint CORNER_STENCILS = 12u;
+// What a patch is evaluated by: the inside, its four edges, its four corners.
+const uint USES = 9u;
+// Instead of a plan: control vertices themselves.
+const uint NO_PLAN = 4294967295u;
+// Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
+const uint USE_FLIPPED = 1u;
+// Use flag: the patch has the first half of the edge.
+const uint USE_FIRST_HALF = 2u;
+// Use flag: the patch has the second half of the edge.
+const uint USE_SECOND_HALF = 4u;
+// Use flag: limit position and tangents of a vertex.
+const uint USE_LIMIT = 8u;
+// Use flag: the limit has several normals there.
+const uint USE_CREASED = 64u;
+// Use flag: by how many quarters its frame is turned against the patch's; two bits.
+const uint USE_TURN_SHIFT = 4u;
+// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
+const uint USE_SIDE_SHIFT = 8u;
+// Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
+const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.
 const uint NODE_INTERNAL = 0u;
 // Node kind: a B-spline.
@@ -40,6 +58,8 @@ const uint NODE_CREASE = 3u;
 const uint NODE_TERMINAL = 4u;
 // Node kind: an extraordinary vertex.
 const uint NODE_EXTRAORDINARY = 5u;
+// Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
+const uint NODE_CURVE = 6u;
 // Points in a level of a terminal node.
 const uint TERMINAL_POINTS = 25u;
 // Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
@@ -81,7 +101,7 @@ struct Patch {
     uint flags;
     // Where its control vertices begin.
     uint controls;
-    // Its plan, or whatever the method keeps for it.
+    // Its border, or whatever the method keeps for it.
     uint plan;
     // The valences of its four corners, a byte each, 255 for more.
     uint valences;
@@ -97,7 +117,26 @@ struct PlanHeader {
     uint root;
     // Its deepest level.
     uint max_level;
-    // The number of stencils needed at level 0..=10; beyond the deepest level as there.
+    // The number of stencils needed at level 0..=11; beyond the deepest level as there. An edge beside an n-gon is one level deeper than
+    // the patches that have half of it.
+    uint counts[12];
+};
+
+// What a patch is evaluated by, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
+struct Border {
+    // The plans, or `NO_PLAN`.
+    uint plans[9];
+    // The nodes that walks begin with.
+    uint roots[9];
+    // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has; not for the inside.
+    uint rings[9];
+    // `USE_...` flags.
+    uint flags[9];
+    // Where it stands which vertices of the 1-ring are evaluated themselves.
+    uint plain;
+    // How many these are.
+    uint plain_count;
+    // The points that a patch needs in the ring at level 0..=10.
     uint counts[11];
 };
 
@@ -135,6 +174,8 @@ struct Frame {
     uint counter;
     // Vertices that the capture holds.
     uint capture_vertices;
+    // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
+    vec2 displacement;
 };
 
 // A vertex as an evaluation shader produced it.

@@ -21,15 +21,16 @@ layout(location = 2) out vec3 out_point[];
 void main() {
     uint number = in_patch[0];
     Patch record = patch_record(number);
-    Levels levels = patch_levels(record, float(min(64u, 1u << greatest_level(record))));
+    Levels levels = patch_levels(record);
     bool drawn = number < frame.end_patch;
 #ifdef SCRATCH_RING
-    uint count = drawn ? scratch_points(record, required_level(levels, greatest_level(record))) : 0u;
+    uint level = required_level(levels);
+    uint count = drawn ? scratch_points(record, level) : 0u;
     if (gl_InvocationID == 0) out_slot = take_slot(number, count);
     barrier();
     uint slot = out_slot;
     drawn = drawn && slot != NO_SLOT;
-    run_stencils(record, slot, drawn ? count : 0u);
+    run_stencils(record, slot, level, drawn ? count : 0u);
     memoryBarrierBuffer();
     barrier();
     memoryBarrierBuffer();

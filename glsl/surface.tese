@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/interface.glsl"
+#include "lib/displacement.glsl"
 #include "method"
 
 // SPACING comes from the build: one module for equal_spacing, one for fractional_even_spacing.
@@ -40,9 +41,11 @@ vec2 texture_coordinates(uint number, vec2 uv) {
 }
 
 void main() {
-    vec2 uv = gl_TessCoord.xy;
-    Surface surface = evaluate_patch(patch_record(in_patch), in_slot, uv);
+    Patch record = patch_record(in_patch);
+    vec2 uv = shared_coordinates(record, patch_levels(record), gl_TessCoord.xy);
+    Surface surface = evaluate_patch(record, in_slot, uv);
     vec3 normal = surface_normal(surface);
+    if (frame.displacement.x != 0.0 && has_one_normal(record, uv)) displace(surface.position, normal);
     out_position = surface.position;
     out_normal = normal;
     out_uv = uv;

@@ -117,14 +117,32 @@ constants! {
     /// Set 0, binding: the first of a method's own tables.
     BINDING_TABLES = 8;
     /// How many tables a method may have of its own.
-    TABLES = 4;
+    TABLES = 5;
 
     /// Invocations of a control shader that runs stencils; also its greatest number of control points.
     CONTROL_INVOCATIONS = 32;
     /// The deepest level of a plan.
     HIGHEST_LEVEL = 10;
-    /// Stencils in front of a plan that belong to its corners: position and two tangents each.
-    CORNER_STENCILS = 12;
+    /// What a patch is evaluated by: the inside, its four edges, its four corners.
+    USES = 9;
+    /// Instead of a plan: control vertices themselves.
+    NO_PLAN = 0xffff_ffff;
+    /// Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
+    USE_FLIPPED = 1;
+    /// Use flag: the patch has the first half of the edge.
+    USE_FIRST_HALF = 2;
+    /// Use flag: the patch has the second half of the edge.
+    USE_SECOND_HALF = 4;
+    /// Use flag: limit position and tangents of a vertex.
+    USE_LIMIT = 8;
+    /// Use flag: the limit has several normals there.
+    USE_CREASED = 64;
+    /// Use flag: by how many quarters its frame is turned against the patch's; two bits.
+    USE_TURN_SHIFT = 4;
+    /// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
+    USE_SIDE_SHIFT = 8;
+    /// Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
+    PATCH_TURNED_CORNER = 128;
 
     /// Node kind: has four children.
     NODE_INTERNAL = 0;
@@ -138,6 +156,8 @@ constants! {
     NODE_TERMINAL = 4;
     /// Node kind: an extraordinary vertex.
     NODE_EXTRAORDINARY = 5;
+    /// Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
+    NODE_CURVE = 6;
     /// Points in a level of a terminal node.
     TERMINAL_POINTS = 25;
 
@@ -185,7 +205,7 @@ structs! {
         flags: u32,
         /// Where its control vertices begin.
         controls: u32,
-        /// Its plan, or whatever the method keeps for it.
+        /// Its border, or whatever the method keeps for it.
         plan: u32,
         /// The valences of its four corners, a byte each, 255 for more.
         valences: u32,
@@ -201,7 +221,26 @@ structs! {
         root: u32,
         /// Its deepest level.
         max_level: u32,
-        /// The number of stencils needed at level 0..=10; beyond the deepest level as there.
+        /// The number of stencils needed at level 0..=11; beyond the deepest level as there. An edge beside an n-gon is one level deeper than
+        /// the patches that have half of it.
+        counts: [u32; 12],
+    }
+
+    /// What a patch is evaluated by, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
+    Border {
+        /// The plans, or `NO_PLAN`.
+        plans: [u32; 9],
+        /// The nodes that walks begin with.
+        roots: [u32; 9],
+        /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has; not for the inside.
+        rings: [u32; 9],
+        /// `USE_...` flags.
+        flags: [u32; 9],
+        /// Where it stands which vertices of the 1-ring are evaluated themselves.
+        plain: u32,
+        /// How many these are.
+        plain_count: u32,
+        /// The points that a patch needs in the ring at level 0..=10.
         counts: [u32; 11],
     }
 
@@ -239,6 +278,8 @@ structs! {
         counter: u32,
         /// Vertices that the capture holds.
         capture_vertices: u32,
+        /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
+        displacement: [f32; 2],
     }
 
     /// A vertex as an evaluation shader produced it.

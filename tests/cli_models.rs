@@ -59,6 +59,8 @@ fn a_plan_is_told_as_json() {
         "regular",
         "irregular",
         "plans",
+        "edge_plans",
+        "vertex_plans",
         "nodes",
         "stencils",
         "bytes",
@@ -79,6 +81,7 @@ fn a_plan_is_told_as_json() {
         "vertices",
         "indices",
         "quadtree",
+        "borders",
         "stencils",
         "scratch_worst_case",
     ];

@@ -12,6 +12,7 @@ use hullform::abi;
 use hullform::gpu::shaders::MODULES;
 
 const TABLE_1: u32 = abi::BINDING_TABLES + 1;
+const TABLE_4: u32 = abi::BINDING_TABLES + 4;
 
 /// Every module: as it ships, and as this build has it.
 fn modules() -> Vec<(String, Vec<u8>)> {
@@ -36,6 +37,7 @@ fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
             // The tables of this method; another's are its own.
             abi::BINDING_TABLES if module.starts_with("quadtree.") => Some("PlanHeader"),
             TABLE_1 if module.starts_with("quadtree.") => Some("Node"),
+            TABLE_4 if module.starts_with("quadtree.") => Some("Border"),
             _ => None,
         },
     }

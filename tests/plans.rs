@@ -9,7 +9,10 @@ use hullform::abi;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
 use hullform::method::{METHODS, method};
-use hullform::plan::{Catalogue, Leaf, Node, PackedPlans, Plan, PlanOptions, Plans, Ring, walk};
+use hullform::plan::{
+    Catalogue, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Plans, Ring, VertexKind,
+    VertexPlan, walk,
+};
 use hullform::subdivision::{Blend, LimitSurface};
 use hullform::tessellation::{Levels, required_level};
 use proptest::prelude::*;
@@ -46,17 +49,12 @@ fn packed(plans: &[Plan]) -> PackedPlans {
     packed
 }
 
-/// Positions are weighted means, tangents weighted differences; the corners' come first.
+/// Points are weighted means of the ring.
 fn hold_sums(plan: &Plan) {
     for (number, stencil) in plan.stencils.iter().enumerate() {
-        let tangent = number < Plan::CORNER_STENCILS && number % 3 != 0;
         let sum: f64 = stencil.weights.iter().sum();
         let size: f64 = stencil.weights.iter().map(|w| w.abs()).sum();
-        let expected = if tangent { 0.0 } else { 1.0 };
-        assert!(
-            (sum - expected).abs() < 1e-12 * size.max(1.0),
-            "{number}: {sum}"
-        );
+        assert!((sum - 1.0).abs() < 1e-12 * size.max(1.0), "{number}: {sum}");
         assert_eq!(stencil.weights.len(), plan.ring_size);
     }
     let levels: Vec<u32> = plan.stencils.iter().map(|stencil| stencil.level).collect();
@@ -64,13 +62,13 @@ fn hold_sums(plan: &Plan) {
 }
 
 /// Children lie behind their parents, and points are stencils there are: so every walk ends, and reads what it may.
-fn hold_tree(plan: &Plan) {
+fn hold_tree(plan: &Plan, children_each: usize) {
     let stencils = plan.stencils.len() as u32;
     for (number, node) in plan.nodes.iter().enumerate() {
         match node {
             Node::Internal { children } => {
                 assert!(*children as usize > number);
-                assert!(*children as usize + 4 <= plan.nodes.len());
+                assert!(*children as usize + children_each <= plan.nodes.len());
             }
             Node::Regular { points, .. } => assert!(points.iter().all(|&p| p < stencils)),
             Node::Crease {
@@ -85,24 +83,24 @@ fn hold_tree(plan: &Plan) {
                 assert!(*corner < 4 && !levels.is_empty());
                 assert!(levels.iter().flatten().all(|&p| p < stencils));
             }
+            Node::Curve {
+                points,
+                edge,
+                sharpness,
+            } => {
+                assert!(points.iter().all(|&p| p < stencils) && points.len() % 16 == 0);
+                assert!([1, 3].contains(edge) && *sharpness >= 0.0);
+            }
             Node::Extraordinary { corner } => assert!(*corner < 4),
         }
     }
 }
 
-/// The points that the evaluation at (u, v) reads; None where it stops at an extraordinary vertex although (u, v) is no corner.
+/// The points that the evaluation at (u, v) reads; None where it stops at an extraordinary vertex.
 fn points_read(plans: Plans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
-    match walk(plans, plan, uv) {
-        Leaf::Corner(corner) => {
-            let at_corner = uv.to_array().iter().all(|&x| x == 0.0 || x == 1.0);
-            at_corner.then(|| (3 * corner..3 * corner + 3).collect())
-        }
-        Leaf::Bspline { points, stride, .. } => Some(
-            (0..16)
-                .map(|i| plans.point(points + i % 4 + stride * (i / 4)))
-                .collect(),
-        ),
-    }
+    let leaf = walk(plans, plans.headers[plan as usize].root, uv);
+    let point = |i: u32| plans.point(leaf.points + i % 4 + leaf.stride * (i / 4));
+    (leaf.kind != abi::NODE_EXTRAORDINARY).then(|| (0..16).map(point).collect())
 }
 
 /// Every point that a coordinate reads is among those that its tess level has.
@@ -124,15 +122,14 @@ fn hold_counts(packed: &PackedPlans, plan: u32, level: f32, coordinates: &[[f32;
     }
 }
 
-/// Coordinates of an equal spacing, as quotients and as what is left of 1.
+/// Coordinates of an equal spacing between the ends, as quotients and as what is left of 1.
 fn steps(level: u32) -> Vec<f32> {
-    let quotients = (0..=level).map(|i| i as f32 / level as f32);
-    let rests = (0..=level).map(|i| 1.0 - i as f32 / level as f32);
+    let quotients = (1..level).map(|i| i as f32 / level as f32);
+    let rests = (1..level).map(|i| 1.0 - i as f32 / level as f32);
     quotients.chain(rests).collect()
 }
 
-/// All coordinates of one level, inside and on the edges. An edge may have a lower level than the inside: since counts grow with levels, it is
-/// enough that each level finds its own.
+/// All coordinates of one level inside.
 fn lattice(level: u32) -> Vec<[f32; 2]> {
     let steps = steps(level);
     let grid = steps
@@ -141,7 +138,7 @@ fn lattice(level: u32) -> Vec<[f32; 2]> {
     grid.collect()
 }
 
-/// Coordinates on no lattice that keep 1 / ceil(level) from the edges or lie on them, as fractional spacing may make them.
+/// Coordinates on no lattice that keep 1 / ceil(level) from the edges, as fractional spacing may make them.
 fn fractional(level: f32, seed: u64) -> Vec<[f32; 2]> {
     let margin = 1.0 / level.ceil();
     let at = |x: f64| {
@@ -151,15 +148,7 @@ fn fractional(level: f32, seed: u64) -> Vec<[f32; 2]> {
     points
         .flat_map(|p| {
             let [u, v] = [at(p.x), at(p.y)];
-            [
-                [u, v],
-                [u, 0.0],
-                [1.0, v],
-                [u, 1.0],
-                [0.0, v],
-                [margin, v],
-                [u, 1.0 - margin],
-            ]
+            [[u, v], [margin, v], [u, 1.0 - margin]]
         })
         .collect()
 }
@@ -183,10 +172,32 @@ fn hold(mesh: &ControlMesh, options: PlanOptions, levels: &[u32]) {
     let plans = plans(mesh, options);
     for plan in &plans {
         hold_sums(plan);
-        hold_tree(plan);
+        hold_tree(plan, 4);
         assert_eq!(plan.max_level, options.max_level);
     }
     hold_levels(&packed(&plans), levels, plans.len() as u64);
+    hold_edges(mesh, options, levels);
+}
+
+/// What holds of plans holds of those of edges: sums, trees, and points that each level counts.
+fn hold_edges(mesh: &ControlMesh, options: PlanOptions, levels: &[u32]) {
+    let topology = Topology::new(mesh);
+    for edge in 0..topology.edge_count() as u32 {
+        let ring = Ring::of_edge(&topology, edge);
+        let EdgePlan { plan, sides } =
+            EdgePlan::build(&ring.configuration, EdgeKind::Whole, options);
+        hold_sums(&plan);
+        hold_tree(&plan, 2);
+        assert!(sides.is_empty() || sides.len() == topology.edge_faces(edge).len());
+        let packed = packed(&[plan]);
+        for &level in levels
+            .iter()
+            .filter(|&&level| level <= 1 << options.max_level)
+        {
+            let along: Vec<[f32; 2]> = steps(level).iter().map(|&t| [t, 0.0]).collect();
+            hold_counts(&packed, 0, level as f32, &along);
+        }
+    }
 }
 
 proptest! {
@@ -202,27 +213,24 @@ proptest! {
 
     /// The topology that a configuration tells has the limits of the mesh it was taken from.
     #[test]
-    fn configurations_tell_all_that_shapes_a_face(recipe in wild()) {
+    fn configurations_tell_all_that_shapes_a_vertex(recipe in wild()) {
         let mesh = recipe.mesh();
         let truth = LimitSurface::new(&mesh);
-        for (ptex, ring) in rings(truth.topology()) {
-            let Some(center) = truth.evaluate(ptex, 0.5, 0.5) else { continue };
-            let plan = Plan::build(&ring.configuration, PlanOptions::default());
+        for ptex in 0..truth.ptex_count() {
+            let (face, corner) = truth.face_corner(ptex);
+            let Some(expected) = truth.evaluate(ptex, 0.0, 0.0) else { continue };
+            let vertex = mesh.face(face as usize)[corner as usize];
+            let ring = Ring::of_vertex(truth.topology(), vertex);
+            let VertexPlan { plan, pairs } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default());
             let positions: Vec<DVec3> = ring.vertices.iter().map(|&v| mesh.positions()[v as usize]).collect();
-            prop_assert_eq!(plan.ring_size, positions.len());
-            let limit = |number: usize| {
-                let weights = plan.stencils[number].weights.iter().enumerate();
-                DVec3::blend(&weights.map(|(i, &w)| (i as u32, w)).collect::<Vec<_>>(), &positions)
-            };
-            let (face, _) = truth.face_corner(ptex);
-            let turn = if mesh.face(face as usize).len() == 4 { ring.start as usize } else { 0 };
-            for corner in 0..4 {
-                let (u, v) = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][(corner + turn) % 4];
-                let expected = truth.evaluate(ptex, u, v).expect("no hole").position;
-                prop_assert!(limit(3 * corner).distance(expected) < 1e-12 * (1.0 + center.position.length()));
-            }
+            prop_assert_eq!((plan.ring_size, pairs.len()), (positions.len(), ring.faces.len()));
+            let weights = plan.stencils[0].weights.iter().enumerate();
+            let limit = DVec3::blend(&weights.map(|(i, &w)| (i as u32, w)).collect::<Vec<_>>(), &positions);
+            prop_assert!(limit.distance(expected.position) < 1e-12 * (1.0 + expected.position.length()));
+        }
+        for (_, ring) in rings(truth.topology()) {
             let again = Ring::from_corner(&ring.configuration.topology(), 0, 0).configuration;
-prop_assert_eq!(&again, &ring.configuration);
+            prop_assert_eq!(&again, &ring.configuration);
         }
     }
 
@@ -297,7 +305,7 @@ fn shared_models_have_sound_plans() {
             assert!(!all.is_empty());
             for plan in &all {
                 hold_sums(plan);
-                hold_tree(plan);
+                hold_tree(plan, 4);
             }
             let some: Vec<Plan> = all.into_iter().step_by(11).collect();
             hold_levels(&packed(&some), &[1, 2, 3, 4, 5, 8, 9, 17, 64], 7);

@@ -12,8 +12,8 @@ struct Levels {
 
 // Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge, so that both have a vertex in the middle and all
 // vertices line up: 2k and k with equal spacing, 4k and 2k with fractional-even (Brainerd et al. 2016, section 7.2).
-Levels patch_levels(Patch record, float greatest) {
-    float level = clamp(frame.level, 1.0, greatest);
+Levels patch_levels(Patch record) {
+    float level = clamp(frame.level, 1.0, 64.0);
     bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
     float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
     if ((record.flags & PATCH_HALF) != 0u) return Levels(vec4(half_level), half_level);
@@ -26,11 +26,32 @@ Levels patch_levels(Patch record, float greatest) {
 }
 
 // The level that stencils are needed for: ceil(log2 of the greatest factor).
-uint required_level(Levels levels, uint deepest) {
+uint required_level(Levels levels) {
     float greatest = max(levels.inside, max(max(levels.edges.x, levels.edges.y), max(levels.edges.z, levels.edges.w)));
     uint level = 0u;
-    while (level < deepest && float(1u << level) < greatest) ++level;
+    while (level < HIGHEST_LEVEL && float(1u << level) < greatest) ++level;
     return level;
+}
+
+// Vertex i of n on an edge, in steps of 2^-16; the steps from the other end are the same.
+float step_of(uint i, uint n) { return float((i * 65536u + n / 2u) / n) / 65536.0; }
+
+// Of an edge beside an n-gon both sides must have the same coordinates, but what the tessellator makes of a quad's 1/6 may differ from half
+// of what it makes of an n-gon's 1/3. Both count vertices, and take an edge's halves from `step_of`.
+vec2 shared_coordinates(Patch record, Levels levels, vec2 uv) {
+    bvec2 on = bvec2(uv.x <= 0.0 || uv.x >= 1.0, uv.y <= 0.0 || uv.y >= 1.0);
+    uint edge = on.y ? (uv.y <= 0.0 ? 0u : 2u) : (uv.x <= 0.0 ? 3u : 1u);
+    bool part = (record.flags & PATCH_HALF) != 0u;
+    bool beside = part ? edge == 0u || edge == 3u : (record.flags & (PATCH_EVEN_EDGE << edge)) != 0u;
+    if (on.x == on.y || !beside) return uv;
+    float along = on.y ? uv.x : uv.y;
+    uint segments = uint(levels.edges[edge]);
+    uint half_segments = part ? segments : segments / 2u;
+    uint i = uint(along * float(segments) + 0.5);
+    bool second = i > half_segments;
+    float t = step_of(second ? i - half_segments : i, half_segments);
+    if (!part) t = second ? 0.5 + 0.5 * t : 0.5 * t;
+    return on.y ? vec2(t, uv.y) : vec2(uv.x, t);
 }
 
 #endif

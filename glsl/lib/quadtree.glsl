@@ -9,14 +9,13 @@ layout(set = 0, binding = BINDING_TABLES + 0, scalar) readonly buffer PlanTable 
 layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer NodeTable { Node nodes[]; };
 layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer PointTable { uint point_halves[]; };
 layout(set = 0, binding = BINDING_TABLES + 3, scalar) readonly buffer WeightTable { float weights[]; };
+layout(set = 0, binding = BINDING_TABLES + 4, scalar) readonly buffer BorderTable { Border borders[]; };
 
 // Point `number` of the nodes' lists: two 16-bit halves a word, the lower first.
 uint node_point(uint number) { return point_halves[number >> 1u] >> ((number & 1u) * 16u) & 0xffffu; }
 
-// Where a walk ends: at a corner of the patch, or in a B-spline.
+// Where a walk ends: in a B-spline. NODE_EXTRAORDINARY has no points: no tess coordinate inside gets there.
 struct Leaf {
-    bool is_corner;
-    uint corner;
     uint points;
     uint stride;
     vec2 uv;
@@ -26,38 +25,29 @@ struct Leaf {
     uint kind;
 };
 
-Leaf corner_leaf(uint corner) {
-    return Leaf(true, corner, 0u, 4u, vec2(0.0), 1.0, 0u, 0.0, NODE_EXTRAORDINARY);
-}
-
 // Levels around an extraordinary vertex: the level is floor(-log2) of the larger distance from it, read off the float's exponent.
 Leaf terminal_leaf(uint points, uint corner, uint levels, vec2 uv, float scale) {
     bvec2 at = bvec2(corner == 1u || corner == 2u, corner >= 2u);
     vec2 from_corner = mix(uv, 1.0 - uv, at);
     uint exponent = floatBitsToUint(max(from_corner.x, from_corner.y)) >> 23u;
     uint level = 126u - min(exponent, 126u);
-    if (level >= levels) return corner_leaf(corner);
+    if (level >= levels) return Leaf(0u, 4u, vec2(0.0), scale, corner, 0.0, NODE_EXTRAORDINARY);
     float grown = power_of_two(int(level));
     vec2 local = from_corner * grown;
     bvec2 child = notEqual(greaterThanEqual(local, vec2(0.5)), at);
     local = 2.0 * mix(local, 1.0 - local, at) - vec2(child);
     uint first = points + TERMINAL_POINTS * level + uint(child.x) + 5u * uint(child.y);
-    return Leaf(false, 0u, first, 5u, local, scale * grown * 2.0, 0u, 0.0, NODE_TERMINAL);
+    return Leaf(first, 5u, local, scale * grown * 2.0, 0u, 0.0, NODE_TERMINAL);
 }
 
-Leaf find_leaf(uint plan, vec2 uv) {
-    bvec2 low = lessThanEqual(uv, vec2(0.0));
-    bvec2 high = greaterThanEqual(uv, vec2(1.0));
-    // Corners have stencils of their own, so that level 1 needs nothing else.
-    if ((low.x || high.x) && (low.y || high.y)) {
-        return corner_leaf(high.y ? (high.x ? 2u : 3u) : (high.x ? 1u : 0u));
-    }
+// The tree of an edge is walked along v = 0.
+Leaf find_leaf(uint root, vec2 uv) {
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     bvec2 upper = greaterThanEqual(uv, vec2(0.5));
-    Node node = nodes[plans[plan].root];
+    Node node = nodes[root];
     float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
-    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 1u && (node.kind & 15u) == NODE_INTERNAL; ++depth) {
+    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (node.kind & 15u) == NODE_INTERNAL; ++depth) {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);
@@ -66,9 +56,8 @@ Leaf find_leaf(uint plan, vec2 uv) {
     }
     uint kind = node.kind & 15u;
     uint place = node.kind >> 4u & 15u;
-    if (kind == NODE_EXTRAORDINARY) return corner_leaf(place);
     if (kind == NODE_TERMINAL) return terminal_leaf(node.points, place, node.kind >> 8u, uv, scale);
-    return Leaf(false, 0u, node.points, 4u, uv, scale, place, node.sharpness, kind);
+    return Leaf(node.points, 4u, uv, scale, place, node.sharpness, kind);
 }
 
 #endif

@@ -12,13 +12,20 @@ struct Surface {
 vec3 normalize_or_zero(vec3 v) {
     float greatest = max(abs(v.x), max(abs(v.y), abs(v.z)));
     if (greatest == 0.0) return vec3(0.0);
-    v /= greatest;
-    return v * inversesqrt(dot(v, v));
+    precise vec3 scaled = v / greatest;
+    precise float square = (scaled.x * scaled.x + scaled.y * scaled.y) + scaled.z * scaled.z;
+    precise vec3 unit = scaled * inversesqrt(square);
+    return unit;
 }
 
 // The tangents are made unit vectors first: far down a quadtree, and in tiny or enormous models, their product would leave that range.
+// Turning both tangents by the same quarters leaves every bit as it is, once no zero is negative.
 vec3 surface_normal(Surface surface) {
-    return normalize_or_zero(cross(normalize_or_zero(surface.du), normalize_or_zero(surface.dv)));
+    vec3 a = normalize_or_zero(surface.du);
+    vec3 b = normalize_or_zero(surface.dv);
+    precise vec3 normal = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    vec3 unit = normalize_or_zero(normal);
+    return mix(unit, vec3(0.0), equal(unit, vec3(0.0)));
 }
 
 #endif

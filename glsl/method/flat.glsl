@@ -11,8 +11,6 @@
 const uint CONTROL_POINTS = 4u;
 #define CONTROL_VERTICES 4
 
-uint greatest_level(Patch record) { return HIGHEST_LEVEL; }
-
 #ifdef STAGE_VERTEX
 // Point i is the mean of some control vertices; four words tell where each point's end.
 vec3 control_point(Patch record, uint number) {
@@ -25,6 +23,9 @@ vec3 control_point(Patch record, uint number) {
 #endif
 
 #ifdef STAGE_EVALUATION
+// Neighbours have normals of their own.
+bool has_one_normal(Patch record, vec2 uv) { return all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0))); }
+
 Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 bottom = in_point[0] * (1.0 - uv.x) + in_point[1] * uv.x;
     vec3 top = in_point[3] * (1.0 - uv.x) + in_point[2] * uv.x;

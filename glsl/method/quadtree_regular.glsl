@@ -3,6 +3,7 @@
 #ifndef QUADTREE_REGULAR_GLSL
 #define QUADTREE_REGULAR_GLSL
 
+#include "lib/border.glsl"
 #include "lib/bspline.glsl"
 #include "lib/cell.glsl"
 #include "lib/control_points.glsl"
@@ -12,23 +13,29 @@
 const uint CONTROL_POINTS = 16u;
 #define CONTROL_VERTICES 16
 
-uint greatest_level(Patch record) { return HIGHEST_LEVEL; }
-
 #ifdef STAGE_VERTEX
 vec3 control_point(Patch record, uint number) { return control_vertex(controls[record.controls + number]); }
 #endif
 
 #ifdef STAGE_EVALUATION
+bool has_one_normal(Patch record, vec2 uv) { return true; }
+
+// On edges the sums go along the edge first, at corners along the direction that the vertex prefers: so all faces there get the same bits.
 Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
-    Basis u = bspline_basis(uv.x);
-    Basis v = bspline_basis(uv.y);
-    Surface surface = Surface(vec3(0.0), vec3(0.0), vec3(0.0));
-    // Written out: control points that are read by constant index stay in registers.
-    add_row(surface, u, v.value.x, v.derivative.x, in_point[0], in_point[1], in_point[2], in_point[3]);
-    add_row(surface, u, v.value.y, v.derivative.y, in_point[4], in_point[5], in_point[6], in_point[7]);
-    add_row(surface, u, v.value.z, v.derivative.z, in_point[8], in_point[9], in_point[10], in_point[11]);
-    add_row(surface, u, v.value.w, v.derivative.w, in_point[12], in_point[13], in_point[14], in_point[15]);
-    return surface;
+    uint place = find_place(record.flags, uv).number;
+    bool turned = place >= 5u ? (record.flags & (PATCH_TURNED_CORNER << (place - 5u))) != 0u : place == 2u || place == 4u;
+    vec2 t = turned_round(turned ? uv.y : uv.x, false);
+    vec2 across = turned_round(turned ? uv.x : uv.y, false);
+    Basis u = bspline_basis_of(t.x, t.y);
+    Basis v = bspline_basis_of(across.x, across.y);
+#define PICK(i, j) (turned ? in_point[j] : in_point[i])
+    Surface surface = bspline_surface(v, 1.0,
+        bspline_row(u, in_point[0], PICK(1, 4), PICK(2, 8), PICK(3, 12)),
+        bspline_row(u, PICK(4, 1), in_point[5], PICK(6, 9), PICK(7, 13)),
+        bspline_row(u, PICK(8, 2), PICK(9, 6), in_point[10], PICK(11, 14)),
+        bspline_row(u, PICK(12, 3), PICK(13, 7), PICK(14, 11), in_point[15]));
+#undef PICK
+    return turned ? Surface(surface.position, surface.dv, surface.du) : surface;
 }
 #endif
 

@@ -14,7 +14,7 @@ use crate::gpu::{
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
-use crate::method::{Prepared, method};
+use crate::method::{Displacement, Prepared, method};
 use crate::plan::PlanOptions;
 use crate::tessellation::Spacing;
 
@@ -336,6 +336,7 @@ impl Loaded<'_> {
             ],
             eye: [0.0, 0.0, 10.0 * self.reach],
             shading: abi::SHADING_PATCH,
+            displacement: Displacement::default(),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{ControlMesh, CreaseMethod, Model, SchemeOptions, builtin};
 use crate::method::{METHODS, Method, Pass, Prepared, method, to_ptex};
-use crate::plan::{Leaf, PlanOptions, Plans, walk};
+use crate::plan::{PlanOptions, Plans, walk};
 use crate::subdivision::{LimitSample, LimitSurface, Scheme};
 use crate::tessellation::Spacing;
 
@@ -39,8 +39,8 @@ struct Setup {
     method: &'static str,
     options: PlanOptions,
     cut: Cut,
-    /// Only what lies in nodes of this kind; `abi::NODE_...`.
-    kind: Option<u32>,
+    /// Only what is evaluated so.
+    kind: Option<Kind>,
 }
 
 impl Setup {
@@ -158,13 +158,25 @@ fn sharpnesses() -> impl Iterator<Item = Case> {
     all.chain(corners).chain(chaikin)
 }
 
-/// The kinds of node, each in a shape that has many of it.
-const KINDS: [(&str, u32, &str); 5] = [
-    ("regular", abi::NODE_REGULAR, "hull"),
-    ("boundary", abi::NODE_BOUNDARY, "sheet"),
-    ("crease", abi::NODE_CREASE, "creased-torus"),
-    ("terminal", abi::NODE_TERMINAL, "ngons"),
-    ("extraordinary", abi::NODE_EXTRAORDINARY, "hull"),
+/// What a vertex is evaluated by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A node of the patch's own plan, of an `abi::NODE_...` kind.
+    Node(u32),
+    /// The plan of an edge.
+    Edge,
+    /// The stencils of a vertex.
+    Corner,
+}
+
+/// The kinds, each in a shape that has many of it.
+const KINDS: [(&str, Kind, &str); 6] = [
+    ("regular", Kind::Node(abi::NODE_REGULAR), "hull"),
+    ("boundary", Kind::Node(abi::NODE_BOUNDARY), "sheet"),
+    ("crease", Kind::Node(abi::NODE_CREASE), "creased-torus"),
+    ("terminal", Kind::Node(abi::NODE_TERMINAL), "ngons"),
+    ("edge", Kind::Edge, "hull"),
+    ("corner", Kind::Corner, "hull"),
 ];
 
 fn kinds() -> impl Iterator<Item = Case> {
@@ -327,7 +339,7 @@ fn diagonal(mesh: &ControlMesh) -> f64 {
 fn samples<'a>(
     prepared: &'a Prepared,
     frame: &'a Frame,
-    kind: Option<u32>,
+    kind: Option<Kind>,
 ) -> Vec<(&'a Pass, &'a Captured)> {
     let passes = prepared.passes.iter().zip(&frame.passes);
     passes
@@ -336,10 +348,16 @@ fn samples<'a>(
         .collect()
 }
 
-/// The kind of the node that a vertex lies in; a patch without a plan is a regular one.
-fn kind_of(pass: &Pass, vertex: &Captured) -> u32 {
-    let [headers, nodes, points, weights] = &pass.tables[..] else {
-        return abi::NODE_REGULAR;
+/// What a captured vertex was evaluated by. A patch without a plan is a regular node as a whole.
+fn kind_of(pass: &Pass, vertex: &Captured) -> Kind {
+    let at_border = vertex.uv.map(|x| x <= 0.0 || x >= 1.0);
+    match at_border {
+        [true, true] => return Kind::Corner,
+        [true, false] | [false, true] => return Kind::Edge,
+        [false, false] => {}
+    }
+    let [headers, nodes, points, weights, borders, ..] = &pass.tables[..] else {
+        return Kind::Node(abi::NODE_REGULAR);
     };
     let plans = Plans {
         headers: bytemuck::cast_slice(headers),
@@ -347,11 +365,10 @@ fn kind_of(pass: &Pass, vertex: &Captured) -> u32 {
         points,
         weights: bytemuck::cast_slice(weights),
     };
-    let plan = pass.patches[vertex.patch_number as usize].plan;
-    match walk(plans, plan, Vec2::from(vertex.uv)) {
-        Leaf::Corner(_) => abi::NODE_EXTRAORDINARY,
-        Leaf::Bspline { kind, .. } => kind,
-    }
+    let borders: &[abi::Border] = bytemuck::cast_slice(borders);
+    let border = &borders[pass.patches[vertex.patch_number as usize].plan as usize];
+    // The first use of a border is the inside.
+    Kind::Node(walk(plans, border.roots[0], Vec2::from(vertex.uv)).kind)
 }
 
 /// What captured vertices are measured with.

@@ -290,11 +290,12 @@ enum Spoiled {
     Patches,
 }
 
-const SPOILED: [(&str, Spoiled); 6] = [
+const SPOILED: [(&str, Spoiled); 7] = [
     ("headers", Spoiled::Table(0)),
     ("nodes", Spoiled::Table(1)),
     ("points", Spoiled::Table(2)),
     ("weights", Spoiled::Table(3)),
+    ("borders", Spoiled::Table(4)),
     ("controls", Spoiled::Controls),
     ("patches", Spoiled::Patches),
 ];

@@ -10,6 +10,7 @@ use crate::gpu::ring::{RING_ACCESS, RING_STAGES, cmd_ring_barrier};
 use crate::gpu::surface::{Slots, TessellatedSurface};
 use crate::gpu::workaround::patches_per_instance;
 use crate::gpu::{Layout, Pipelines};
+use crate::method::Displacement;
 use crate::tessellation::Spacing;
 
 /// What the control shaders counted.
@@ -30,6 +31,8 @@ pub struct View {
     pub eye: [f32; 3],
     /// One of `abi::SHADING_...`.
     pub shading: u32,
+    /// A displacement along the normal. Where the limit has several normals, on infinite creases and at cusps, points stay.
+    pub displacement: Displacement,
 }
 
 /// Some patches, the same number in each instance.
@@ -219,6 +222,7 @@ impl TessellatedSurface {
             ring_points: (self.options.ring_bytes / 16).min(u64::from(u32::MAX / 2)) as u32,
             counter: abi::COUNTER_BATCHES + batch.ring_batch,
             capture_vertices: self.options.capture_vertices,
+            displacement: [view.displacement.height, view.displacement.frequency],
         }
     }
 

@@ -41,12 +41,12 @@ impl Model {
         self.centre
     }
 
-    /// The control vertices relative to the centre.
+    /// The control vertices relative to the centre. No zero is negative: whatever faces make of one has the same bits.
     pub fn positions(&self) -> Vec<Vec3> {
         self.mesh
             .positions()
             .iter()
-            .map(|&position| (position - self.centre).as_vec3())
+            .map(|&position| (position - self.centre).as_vec3() + Vec3::ZERO)
             .collect()
     }
 }

@@ -3,6 +3,7 @@
 //! A method is one file here, one in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the rows;
 //! nothing else names a method.
 
+mod displacement;
 mod flat;
 mod patches;
 mod quadtree;
@@ -14,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Model;
 use crate::plan::PlanOptions;
 
+pub use displacement::Displacement;
 pub use quadtree::PlanStatistics;
 
 /// The shape of a method's patches.
@@ -124,9 +126,9 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel.
+    /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel. No zero is negative.
     pub fn normal(&self) -> Vec3 {
-        normalized(normalized(self.du).cross(normalized(self.dv)))
+        normalized(normalized(self.du).cross(normalized(self.dv))) + Vec3::ZERO
     }
 }
 

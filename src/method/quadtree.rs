@@ -1,9 +1,12 @@
 //! `quadtree`: adaptive quadtrees (Brainerd et al. 2016). Regular faces are plain B-spline patches (section 7.1); every other face brings
 //! its 1-ring and a plan, whose stencils the control shader runs and whose quadtree the evaluation shader walks.
 
+mod border;
+mod twin;
+
 use std::time::Instant;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::abi;
@@ -11,11 +14,11 @@ use crate::error::Result;
 use crate::mesh::Model;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Domain, Method, Pass, Prepared, Surface};
-use crate::patch::bspline::{Basis, basis};
-use crate::patch::crease::crease_basis;
-use crate::plan::{Catalogue, Leaf, NodeKind, PackedPlans, PlanOptions, Plans, Ring, walk};
+use crate::method::{Contract, Domain, Method, Pass, Prepared};
+use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
+
+use border::{Borders, Irregular, is_turned_corner};
 
 /// The row of the table.
 pub const METHOD: Method = Method {
@@ -27,7 +30,7 @@ pub const METHOD: Method = Method {
         limit: Some(1e-6),
         normals: Some(0.1),
         interpolates: false,
-        watertight: false,
+        watertight: true,
     },
     prepare,
 };
@@ -39,11 +42,15 @@ pub struct PlanStatistics {
     pub regular: usize,
     /// All others.
     pub irregular: usize,
-    /// Different plans of the irregular patches.
+    /// Different plans of the irregular patches' insides.
     pub plans: usize,
+    /// Different plans of their edges.
+    pub edge_plans: usize,
+    /// Different plans of their corners.
+    pub vertex_plans: usize,
     /// Nodes of each kind, in the order internal, regular, boundary, crease, terminal, extraordinary.
     pub nodes: [usize; 6],
-    /// Stencils over all plans.
+    /// Stencils over all plans of insides.
     pub stencils: usize,
     /// Bytes of control vertices.
     pub vertex_bytes: usize,
@@ -51,11 +58,13 @@ pub struct PlanStatistics {
     pub index_bytes: usize,
     /// Bytes of the quadtrees.
     pub quadtree_bytes: usize,
-    /// Bytes of the stencils.
+    /// Bytes of the trees of edges, and of what tells patches by which plans their edges and corners are evaluated.
+    pub border_bytes: usize,
+    /// Bytes of the stencils, those of edges and vertices included.
     pub stencil_bytes: usize,
     /// Bytes of scratch if every irregular patch kept a slot for its deepest level.
     pub scratch_worst_case_bytes: usize,
-    /// Points over all irregular patches at each level.
+    /// Points over all irregular patches at each level, those of edges and corners included.
     pub control_points: [u64; abi::HIGHEST_LEVEL as usize + 1],
     /// Seconds for configurations, plans and packing.
     pub build_seconds: f64,
@@ -75,44 +84,68 @@ fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
         .into_par_iter()
         .map(|part| surroundings(topology, part))
         .collect();
-    let mut regular = pass("quadtree_regular", 16, regular_twin, options);
+    let mut regular = pass("quadtree_regular", 16, twin::regular, options);
     let mut irregular = pass(
         "quadtree",
         abi::CONTROL_INVOCATIONS,
-        irregular_twin,
+        twin::irregular,
         options,
     );
     let mut catalogue = Catalogue::default();
+    let mut rings = Vec::new();
     for part in found {
         match part {
             Surroundings::Regular(part, vertices) => {
-                add(&mut regular, model, part, 0, &vertices, 0)
+                let flags = turned_corners(topology, part.face);
+                add(&mut regular, model, part, 0, &vertices).flags |= flags;
             }
             Surroundings::Irregular(part, ring) => {
-                let plan = catalogue.number(ring.configuration);
-                let turn = if topology.face(part.face).len() == 4 {
-                    ring.start
-                } else {
-                    0
-                };
-                add(&mut irregular, model, part, turn, &ring.vertices, plan);
+                let plan = catalogue.number(ring.configuration.clone());
+                rings.push(Irregular { part, ring, plan });
             }
         }
     }
     let mut packed = PackedPlans::default();
-    catalogue
-        .build(options)
-        .iter()
-        .for_each(|plan| packed.push(plan));
-    irregular.scratch_points = packed.headers.iter().map(|header| header.counts).collect();
+    let plans = catalogue.build(options);
+    plans.iter().for_each(|plan| packed.push(plan));
+    let nodes = NODE_KINDS.map(|kind| packed.count(kind));
+    let quadtree_bytes = packed.quadtree_bytes();
+    let borders = Borders::new(topology, &rings, &mut packed, options);
+    for (patch, &border) in rings.iter().zip(&borders.numbers) {
+        let turn = patch.turn(topology);
+        add(
+            &mut irregular,
+            model,
+            patch.part,
+            turn,
+            &patch.ring.vertices,
+        )
+        .plan = border;
+    }
+    let records = with_places(&mut irregular, &borders);
+    irregular.scratch_points = records.iter().map(|border| border.counts).collect();
     irregular.tables = vec![
         bytemuck::cast_slice(&packed.headers).to_vec(),
         bytemuck::cast_slice(&packed.nodes).to_vec(),
         packed.points.clone(),
         bytemuck::cast_slice(&packed.weights).to_vec(),
+        bytemuck::cast_slice(&records).to_vec(),
     ];
-    let mut plans = statistics(model, &regular, &irregular, &packed);
-    plans.build_seconds = started.elapsed().as_secs_f64();
+    let statistics = PlanStatistics {
+        plans: plans.len(),
+        edge_plans: borders.edge_plans,
+        vertex_plans: borders.vertex_plans,
+        nodes,
+        stencils: plans.iter().map(|plan| plan.stencils.len()).sum(),
+        quadtree_bytes,
+        border_bytes: packed.quadtree_bytes() - quadtree_bytes + size_of_val(&records[..]),
+        stencil_bytes: packed.stencil_bytes(),
+        ..statistics(model, &regular, &irregular)
+    };
+    let plans = PlanStatistics {
+        build_seconds: started.elapsed().as_secs_f64(),
+        ..statistics
+    };
     let passes = [regular, irregular]
         .into_iter()
         .filter(|pass| !pass.patches.is_empty())
@@ -121,6 +154,27 @@ fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
         passes,
         plans: Some(plans),
     })
+}
+
+/// Puts the borders' lists behind the lists of control vertices, and the borders right.
+fn with_places(pass: &mut Pass, borders: &Borders) -> Vec<abi::Border> {
+    let start = pass.controls.len() as u32;
+    pass.controls.extend_from_slice(&borders.places);
+    let moved = |border: &abi::Border| abi::Border {
+        rings: border.rings.map(|ring| ring + start),
+        plain: border.plain + start,
+        ..*border
+    };
+    borders.records.iter().map(moved).collect()
+}
+
+/// The flags of a regular patch's corners at which sums go along v first.
+fn turned_corners(topology: &Topology, face: u32) -> u32 {
+    let turned = |&corner: &u32| is_turned_corner(topology, face, corner) != (corner % 2 == 1);
+    let corners = (0..4).filter(turned);
+    corners
+        .map(|corner| abi::PATCH_TURNED_CORNER << corner)
+        .sum()
 }
 
 fn pass(
@@ -167,29 +221,32 @@ fn plain_vertices(patch: &BsplinePatch) -> Option<[u32; 16]> {
     (patch.crease.is_none() && !patch.mirrored).then(|| patch.points.map(vertex))
 }
 
-fn add(pass: &mut Pass, model: &Model, part: Part, turn: u32, vertices: &[u32], plan: u32) {
+fn add<'a>(
+    pass: &'a mut Pass,
+    model: &Model,
+    part: Part,
+    turn: u32,
+    vertices: &[u32],
+) -> &'a mut abi::Patch {
     let mut patch = patches::patch(model.topology(), part, turn);
     patch.controls = pass.controls.len() as u32;
-    patch.plan = plan;
     pass.controls.extend_from_slice(vertices);
     pass.texture.push(patches::texture(model, part, turn));
     pass.patches.push(patch);
+    pass.patches.last_mut().expect("it was just pushed")
 }
 
-fn statistics(
-    model: &Model,
-    regular: &Pass,
-    irregular: &Pass,
-    packed: &PackedPlans,
-) -> PlanStatistics {
-    let kinds = [
-        NodeKind::Internal,
-        NodeKind::Regular,
-        NodeKind::Boundary,
-        NodeKind::Crease,
-        NodeKind::Terminal,
-        NodeKind::Extraordinary,
-    ];
+const NODE_KINDS: [NodeKind; 6] = [
+    NodeKind::Internal,
+    NodeKind::Regular,
+    NodeKind::Boundary,
+    NodeKind::Crease,
+    NodeKind::Terminal,
+    NodeKind::Extraordinary,
+];
+
+/// What the passes tell.
+fn statistics(model: &Model, regular: &Pass, irregular: &Pass) -> PlanStatistics {
     let points = |level: usize| -> u64 {
         (0..irregular.patches.len())
             .map(|patch| u64::from(irregular.points(patch, level as u32)))
@@ -198,155 +255,10 @@ fn statistics(
     PlanStatistics {
         regular: regular.patches.len(),
         irregular: irregular.patches.len(),
-        plans: packed.headers.len(),
-        nodes: kinds.map(|kind| packed.count(kind)),
-        stencils: packed
-            .headers
-            .iter()
-            .map(|header| header.counts[header.max_level as usize] as usize)
-            .sum(),
         vertex_bytes: size_of::<Vec3>() * model.mesh().vertex_count(),
         index_bytes: size_of_val(&regular.controls[..]) + size_of_val(&irregular.controls[..]),
-        quadtree_bytes: packed.quadtree_bytes(),
-        stencil_bytes: packed.stencil_bytes(),
         scratch_worst_case_bytes: 16 * points(irregular.max_level as usize) as usize,
         control_points: std::array::from_fn(points),
-        build_seconds: 0.0,
-    }
-}
-
-/// The sixteen products of two bases, with control points from `point`. Twin of `glsl/lib/bspline.glsl`.
-fn bspline(
-    u: Basis<f32>,
-    v: Basis<f32>,
-    scale: f32,
-    point: impl Fn(usize, usize) -> Vec3,
-) -> Surface {
-    let mut surface = Surface::default();
-    for y in 0..4 {
-        let (mut row, mut row_du) = (Vec3::ZERO, Vec3::ZERO);
-        for x in 0..4 {
-            let point = point(x, y);
-            row += u.value[x] * point;
-            row_du += u.derivative[x] * point;
-        }
-        surface.position += v.value[y] * row;
-        surface.du += v.value[y] * row_du;
-        surface.dv += v.derivative[y] * row;
-    }
-    Surface {
-        du: scale * surface.du,
-        dv: scale * surface.dv,
-        ..surface
-    }
-}
-
-fn regular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
-    let controls = &pass.controls[pass.patches[patch].controls as usize..];
-    bspline(basis(uv.x), basis(uv.y), 1.0, |x, y| {
-        positions[controls[x + 4 * y] as usize]
-    })
-}
-
-/// Runs the stencils that the point needs, and evaluates it; from the same bytes as the shaders. Like them it takes the ring relative to
-/// its first vertex: tangents deep in the tree are differences of small numbers then, instead of small differences of large ones.
-fn irregular_twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
-    let plans = plans(pass);
-    let abi::Patch { controls, plan, .. } = pass.patches[patch];
-    let header = plans.headers[plan as usize];
-    let ring = &pass.controls[controls as usize..][..header.ring_size as usize];
-    let origin = positions[ring[0] as usize];
-    let local: Vec<Vec3> = ring
-        .iter()
-        .map(|&vertex| positions[vertex as usize] - origin)
-        .collect();
-    let stencil = |number: u32| {
-        let weights = &plans.weights[(header.weights + number * header.ring_size) as usize..];
-        weighted_sum(&local, weights)
-    };
-    match walk(plans, plan, uv) {
-        Leaf::Corner(corner) => {
-            let [position, du, dv] = [0, 1, 2].map(|i| stencil(3 * corner + i));
-            Surface {
-                position: position + origin,
-                du,
-                dv,
-            }
-        }
-        Leaf::Bspline {
-            points,
-            stride,
-            uv,
-            scale,
-            edge,
-            sharpness,
-            ..
-        } => {
-            let (u, v) = creased(uv, edge, sharpness);
-            let local = bspline(u, v, scale, |x, y| {
-                stencil(plans.point(points + x as u32 + stride * y as u32))
-            });
-            Surface {
-                position: local.position + origin,
-                ..local
-            }
-        }
-    }
-}
-
-/// The sum of weighted points, in the order and the manner of the control shader: rings of more than 32 vertices are summed with
-/// compensation (Kahan 1965), since where hundreds of faces meet, the tangents of neighbours differ by less than a plain sum would lose.
-fn weighted_sum(points: &[Vec3], weights: &[f32]) -> Vec3 {
-    let terms = points
-        .iter()
-        .zip(weights)
-        .map(|(&point, &weight)| weight * point);
-    if points.len() <= abi::CONTROL_INVOCATIONS as usize {
-        return terms.fold(Vec3::ZERO, |sum, term| sum + term);
-    }
-    let (mut sum, mut lost) = (Vec3::ZERO, Vec3::ZERO);
-    for term in terms {
-        let rest = term - lost;
-        let next = sum + rest;
-        lost = (next - sum) - rest;
-        sum = next;
-    }
-    sum
-}
-
-/// The bases in both directions; across a crease on one of the edges the crease's own. Twin of `glsl/lib/crease.glsl`.
-fn creased(uv: Vec2, edge: u32, sharpness: f32) -> (Basis<f32>, Basis<f32>) {
-    let (mut u, mut v) = (basis(uv.x), basis(uv.y));
-    if sharpness > 0.0 {
-        match edge {
-            0 => v = crease_basis(uv.y, sharpness),
-            1 => u = reversed(crease_basis(1.0 - uv.x, sharpness)),
-            2 => v = reversed(crease_basis(1.0 - uv.y, sharpness)),
-            _ => u = crease_basis(uv.x, sharpness),
-        }
-    }
-    (u, v)
-}
-
-/// The basis of the curve run backwards.
-fn reversed(basis: Basis<f32>) -> Basis<f32> {
-    let Basis {
-        mut value,
-        mut derivative,
-    } = basis;
-    value.reverse();
-    derivative.reverse();
-    Basis {
-        value,
-        derivative: derivative.map(|weight| -weight),
-    }
-}
-
-fn plans(pass: &Pass) -> Plans<'_> {
-    Plans {
-        headers: bytemuck::cast_slice(&pass.tables[0]),
-        nodes: bytemuck::cast_slice(&pass.tables[1]),
-        points: &pass.tables[2],
-        weights: bytemuck::cast_slice(&pass.tables[3]),
+        ..PlanStatistics::default()
     }
 }

@@ -13,8 +13,12 @@ pub struct Basis<T> {
 
 /// The cubic B-spline basis at `t` in 0..=1 of the middle interval.
 pub fn basis<T: Real>(t: T) -> Basis<T> {
+    basis_of(t, T::from(1.0) - t)
+}
+
+/// The basis at `t`, where `s` is 1 - t. With both exchanged it is the same basis from the other end, bit by bit.
+pub fn basis_of<T: Real>(t: T, s: T) -> Basis<T> {
     let c = |x: f32| T::from(x);
-    let s = c(1.0) - t;
     let sixth = c(1.0) / c(6.0);
     Basis {
         value: [

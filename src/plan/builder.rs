@@ -3,12 +3,12 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Result};
-use crate::mesh::topology::Topology;
 use crate::plan::configuration::Configuration;
+use crate::plan::level::Level;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, limit_stencil, refine};
+use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,26 +67,21 @@ pub struct Plan {
     pub max_level: u32,
     /// The quadtree; node 0 is its root.
     pub nodes: Vec<Node>,
-    /// Sorted by level. The first twelve are, for each corner, the limit position and the two tangents there.
+    /// Sorted by level.
     pub stencils: Vec<Stencil>,
 }
 
 impl Plan {
-    /// The number of stencils in front that belong to the corners: position and two tangents each.
-    pub const CORNER_STENCILS: usize = 12;
-
-    /// Builds the plan of a configuration.
+    /// Builds the plan of a face: what is inside of it. Edges and corners have plans of their own.
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Plan {
         let base = Level::base(configuration);
         let mut builder = Builder {
             options,
-            rows: Rows::zero(base.rows.width(), Plan::CORNER_STENCILS),
-            corners: [false; 4],
+            rows: Rows::zero(base.rows.width(), 0),
             numbers: FxHashMap::default(),
         };
         let tree = builder.grow(base).fold();
-        let mut levels = vec![0; builder.rows.len()];
-        levels[Plan::CORNER_STENCILS..].fill(options.max_level);
+        let mut levels = vec![options.max_level; builder.rows.len()];
         require(
             &tree,
             Span::WHOLE,
@@ -108,41 +103,6 @@ impl Plan {
     }
 }
 
-/// A refinement level: some cells in their surroundings, each vertex a row of weights.
-struct Level {
-    topology: Topology,
-    rows: Rows,
-}
-
-impl Level {
-    /// The level at which the plan begins: the quad itself, or the n-gon's part at its corner 0.
-    fn base(configuration: &Configuration) -> Level {
-        let topology = configuration.topology();
-        let base = Level {
-            rows: Rows::identity(topology.vertex_count()),
-            topology,
-        };
-        if base.topology.face(0).len() == 4 {
-            base
-        } else {
-            base.refined(&[(0, 0)])
-        }
-    }
-
-    fn refined(&self, cells: &[(u32, u32)]) -> Level {
-        let refined = refine(&self.topology, cells);
-        let mut rows = Rows::zero(self.rows.width(), 0);
-        rows.reserve(refined.masks.len());
-        for mask in &refined.masks {
-            rows.push(mask, &self.rows);
-        }
-        Level {
-            topology: refined.topology,
-            rows,
-        }
-    }
-}
-
 /// A cell that waits to be turned into a leaf or four cells.
 #[derive(Clone, Copy)]
 struct Cell {
@@ -159,19 +119,17 @@ enum Grown {
 
 struct Builder {
     options: PlanOptions,
-    /// First the corners' limits, as [`Plan::stencils`] has them, then the control points as they are met.
+    /// The control points as they are met.
     rows: Rows,
-    /// Which corners' limits are known.
-    corners: [bool; 4],
     /// The rows of this level's control points.
     numbers: FxHashMap<ControlPoint, u32>,
 }
 
 /// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
-const SHALLOWEST: u32 = 2;
+pub(super) const SHALLOWEST: u32 = 2;
 
 /// Semi-sharp features are gone after ten levels; a cell inside a face is a B-spline then.
-const DEEPEST: u32 = 11;
+pub(super) const DEEPEST: u32 = 11;
 
 impl Builder {
     /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
@@ -186,9 +144,6 @@ impl Builder {
             let mut row = Vec::with_capacity(cells.len());
             for (number, &cell) in (0..).zip(&cells) {
                 let leaf = self.leaf(&level, number, cell, depth);
-                for corner in (0..4).filter(|&c| depth == 0 || cell.corner == Some(c)) {
-                    self.corner(&level, number, corner, depth, leaf.is_some());
-                }
                 row.push(leaf.map_or(Grown::Children(next.len()), Grown::Leaf));
                 if let Grown::Children(_) = row[row.len() - 1] {
                     next.extend((0..4).map(|corner| Cell {
@@ -205,31 +160,6 @@ impl Builder {
             cells = next;
         }
         join(&grown, 0, 0)
-    }
-
-    /// Limit position and tangents at a corner of the face, once no semi-sharp feature is left there; of a leaf, which the levels to
-    /// come do without, by refining on.
-    fn corner(&mut self, level: &Level, number: u32, corner: u32, depth: u32, leaf: bool) {
-        if self.corners[corner as usize] {
-            return;
-        }
-        if let Some(limit) = limit_stencil(&level.topology, number, corner) {
-            self.corners[corner as usize] = true;
-            let first = 3 * corner as usize;
-            for (i, mask) in [limit.position, limit.du, limit.dv].iter().enumerate() {
-                self.rows.add(first + i, mask, &level.rows);
-            }
-            // A child's parameters run twice as fast as its parent's.
-            for i in [1, 2] {
-                let tangent = self.rows.row_mut(first + i);
-                tangent
-                    .iter_mut()
-                    .for_each(|weight| *weight *= f64::from(1 << depth));
-            }
-        } else if leaf {
-            let child = level.refined(&[(number, corner)]);
-            self.corner(&child, 0, corner, depth + 1, leaf);
-        }
     }
 
     /// The cell as a leaf, or None when it must be refined.
@@ -329,12 +259,12 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
                 (u, v) = (us[end % 2], vs[end / 2]);
             }
         }
-        Tree::Leaf(Node::Extraordinary { .. } | Node::Internal { .. }) => {}
+        Tree::Leaf(Node::Curve { .. } | Node::Extraordinary { .. } | Node::Internal { .. }) => {}
     }
 }
 
 /// Sorts the stencils by level and renumbers the points of the nodes.
-fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_level: u32) -> Plan {
+pub(super) fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_level: u32) -> Plan {
     let mut order: Vec<u32> = (0..rows.len() as u32).collect();
     order.sort_by_key(|&point| levels[point as usize]);
     let mut place = vec![0; rows.len()];
@@ -350,6 +280,7 @@ fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_level: u32) -> 
         match node {
             Node::Regular { points, .. } | Node::Crease { points, .. } => renumber(points),
             Node::Terminal { levels, .. } => levels.iter_mut().for_each(|grid| renumber(grid)),
+            Node::Curve { points, .. } => renumber(points),
             Node::Internal { .. } | Node::Extraordinary { .. } => {}
         }
     }

@@ -25,45 +25,80 @@ pub struct Ring {
     pub vertices: Vec<u32>,
     /// The configuration.
     pub configuration: Configuration,
-    /// The corner of the face at which the walk began: the plan's corner 0.
+    /// The faces of the 1-ring, by their numbers in the mesh, in the order of the configuration.
+    pub faces: Vec<u32>,
+    /// The corner of the first face at which the walk began: the plan's corner 0.
     pub start: u32,
 }
 
 impl Ring {
     /// The ring of a quad, beginning at the corner whose configuration is the least, so that turned faces find the same plan.
     pub fn of_quad(topology: &Topology, face: u32) -> Ring {
-        let rings = (0..4).map(|start| Ring::from_corner(topology, face, start));
-        rings
-            .min_by(|a, b| a.configuration.cmp(&b.configuration))
-            .expect("there are four")
+        Ring::least((0..4).map(|start| Ring::from_corner(topology, face, start)))
     }
 
     /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner.
     pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Ring {
-        let faces = surrounding_faces(topology, face, start);
+        let arity = topology.face(face).len() as u32;
+        Ring::around(topology, face, start, arity)
+    }
+
+    /// The ring of the edge: the faces around its ends. It begins in one of the faces on the edge, and the edge runs from vertex 0 to
+    /// vertex 1, so that the configuration is the least.
+    pub fn of_edge(topology: &Topology, edge: u32) -> Ring {
+        let rings = topology.edge_faces(edge).iter().map(|&face| {
+            let edges = topology.face_edges(face).iter();
+            let start = edges.into_iter().position(|&e| e == edge);
+            let start = start.expect("a face on the edge has it") as u32;
+            Ring::around(topology, face, start, 2)
+        });
+        Ring::least(rings)
+    }
+
+    /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least.
+    pub fn of_vertex(topology: &Topology, vertex: u32) -> Ring {
+        let corners = topology.vertex_faces(vertex).iter();
+        Ring::least(corners.map(|at| Ring::around(topology, at.face, at.corner, 1)))
+    }
+
+    fn least(rings: impl Iterator<Item = Ring>) -> Ring {
+        rings
+            .min_by(|a, b| a.configuration.cmp(&b.configuration))
+            .expect("edges and vertices of faces have faces")
+    }
+
+    /// The faces around so many vertices of a face, beginning with its corner `start`.
+    fn around(topology: &Topology, face: u32, start: u32, corners: u32) -> Ring {
+        let faces = surrounding_faces(topology, face, start, corners);
         let mut walk = Walk::new(topology, faces.len());
         walk.options(topology.options());
         walk.words.push(faces.len() as u32);
         for &(face, start) in &faces {
             walk.face(face, start);
         }
-        let arity = topology.face(face).len();
-        for corner in 0..arity {
+        walk.words.push(corners);
+        for corner in 0..corners as usize {
             walk.words
                 .push(topology.vertex_sharpness(walk.vertices[corner]).to_bits());
         }
-        walk.edges(&faces, arity);
+        walk.edges(&faces, corners as usize);
         Ring {
             vertices: walk.vertices,
             configuration: Configuration { words: walk.words },
+            faces: faces.iter().map(|&(face, _)| face).collect(),
             start,
         }
     }
 }
 
-/// Every face that touches `face`, which comes first: around each corner in turn, counter-clockwise and then, where a boundary stopped the
+/// Every face that has one of so many vertices of `face`, which comes first: around each corner in turn, beginning with `start`, counter-clockwise and then, where a boundary stopped the
 /// walk, clockwise; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
-fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> SmallVec<[(u32, u32); 16]> {
+fn surrounding_faces(
+    topology: &Topology,
+    face: u32,
+    start: u32,
+    corners: u32,
+) -> SmallVec<[(u32, u32); 16]> {
     let arity = topology.face(face).len() as u32;
     let mut found = SmallVec::from_slice(&[(face, start)]);
     let mut add = |next: u32, vertex: u32| {
@@ -76,7 +111,7 @@ fn surrounding_faces(topology: &Topology, face: u32, start: u32) -> SmallVec<[(u
             found.push((next, corner as u32));
         }
     };
-    'corners: for corner in (0..arity).map(|i| (start + i) % arity) {
+    'corners: for corner in (0..corners).map(|i| (start + i) % arity) {
         let vertex = topology.face(face)[corner as usize];
         let edges = topology.face_edges(face);
         let around = topology.vertex_faces(vertex);
@@ -194,9 +229,10 @@ impl Configuration {
         let faces: Vec<SmallVec<[u32; 4]>> = (0..word())
             .map(|_| (0..word()).map(|_| word()).collect())
             .collect();
+        let corners = word() as usize;
         let vertices = faces.iter().flatten().max().expect("a face has vertices") + 1;
         let mut sharpness = vec![0.0; vertices as usize];
-        for sharpness in &mut sharpness[..faces[0].len()] {
+        for sharpness in &mut sharpness[..corners] {
             *sharpness = f32::from_bits(word());
         }
         let rest: Vec<u32> = words.collect();

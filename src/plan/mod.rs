@@ -3,15 +3,20 @@
 mod builder;
 mod catalogue;
 mod configuration;
+mod edge;
+mod level;
 mod packing;
 mod rows;
 mod span;
 mod tree;
+mod vertex;
 mod walk;
 
 pub use builder::{Plan, PlanOptions, Stencil};
 pub use catalogue::Catalogue;
 pub use configuration::{Configuration, Ring};
+pub use edge::{EdgeKind, EdgePlan};
 pub use packing::{PackedPlans, Plans};
 pub use tree::{Node, NodeKind};
+pub use vertex::{VertexKind, VertexPlan};
 pub use walk::{Leaf, walk};

@@ -46,6 +46,17 @@ impl PackedPlans {
         }
     }
 
+    /// Appends a node of its own, a B-spline of sixteen points, number x + 4 y; returns its number.
+    pub fn push_bspline(&mut self, points: &[u32; 16]) -> u32 {
+        let points = self.list(points);
+        self.nodes.push(abi::Node {
+            kind: NodeKind::Regular as u32,
+            points,
+            sharpness: 0.0,
+        });
+        self.nodes.len() as u32 - 1
+    }
+
     fn pack(&mut self, node: &Node, root: u32) -> abi::Node {
         let (place, levels, points, sharpness) = match node {
             Node::Internal { children } => (0, 0, root + children, 0.0),
@@ -61,6 +72,11 @@ impl PackedPlans {
                 self.list(&levels.concat()),
                 0.0,
             ),
+            Node::Curve {
+                points,
+                edge,
+                sharpness,
+            } => (*edge, 0, self.list(points), *sharpness),
             Node::Extraordinary { corner } => (*corner, 0, 0, 0.0),
         };
         abi::Node {

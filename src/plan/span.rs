@@ -50,17 +50,14 @@ impl Span {
         low < high || (low == high && with_low && with_high)
     }
 
-    /// Whether the face's own edge at 0 or 1 belongs to it.
-    fn has_end(self) -> bool {
-        self.low == 0.0 || self.high == 1.0
+    /// The lowest level, of 1..=deepest, at which a tess coordinate inside may fall into it.
+    pub fn required_level(self, deepest: u32) -> u32 {
+        let needed = |&level: &u32| self.has_inner(level);
+        (1..deepest).find(needed).unwrap_or(deepest)
     }
 }
 
-/// The lowest level, of 1..=deepest, at which a tess coordinate other than the face's corners may fall into the cell `u` x `v`.
+/// The lowest level, of 1..=deepest, at which a tess coordinate inside the face may fall into the cell `u` x `v`.
 pub fn required_level(u: Span, v: Span, deepest: u32) -> u32 {
-    let needed = |level| {
-        let (in_u, in_v) = (u.has_inner(level), v.has_inner(level));
-        in_u && (in_v || v.has_end()) || in_v && u.has_end()
-    };
-    (1..deepest).find(|&level| needed(level)).unwrap_or(deepest)
+    u.required_level(deepest).max(v.required_level(deepest))
 }

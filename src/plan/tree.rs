@@ -16,12 +16,14 @@ pub enum NodeKind {
     Terminal = 4,
     /// An extraordinary vertex, evaluated nowhere but there.
     Extraordinary = 5,
+    /// A stretch of an edge.
+    Curve = 6,
 }
 
 /// A node of the quadtree. Points are numbers of the plan's stencils.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// Four children x + 2 y from this node on.
+    /// Four children x + 2 y from this node on; of an edge, two.
     Internal {
         /// The first child.
         children: u32,
@@ -49,7 +51,17 @@ pub enum Node {
         /// For each level 5 x 5 points, number x + 5 y; the one beyond the extraordinary vertex is missing and stands as 0.
         levels: Vec<[u32; 25]>,
     },
-    /// The extraordinary vertex at `corner`.
+    /// A stretch of an edge, in the plan of an edge: a B-spline whose row 1 is the position along the edge, and row 2 that plus the derivative
+    /// across. The other rows have no weight.
+    Curve {
+        /// Sixteen points for each side that has its own derivative, number x + 4 y.
+        points: Vec<u32>,
+        /// The edge of the B-spline, 3 or 1, along which a semi-sharp crease crosses at the stretch's beginning or end.
+        edge: u32,
+        /// The sharpness that is left there at this node's level; 0 without a crease.
+        sharpness: f32,
+    },
+    /// The extraordinary vertex at `corner`; of an edge, at the end `corner`.
     Extraordinary {
         /// The corner, 0..=3, both of the node and of the face.
         corner: u32,
@@ -66,6 +78,7 @@ impl Node {
             } => NodeKind::Regular,
             Node::Regular { mirrored: true, .. } => NodeKind::Boundary,
             Node::Crease { .. } => NodeKind::Crease,
+            Node::Curve { .. } => NodeKind::Curve,
             Node::Terminal { .. } => NodeKind::Terminal,
             Node::Extraordinary { .. } => NodeKind::Extraordinary,
         }

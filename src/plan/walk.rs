@@ -6,40 +6,23 @@ use glam::Vec2;
 use crate::abi;
 use crate::plan::packing::Plans;
 
-/// Where a walk ends.
+/// Where a walk ends: in a B-spline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Leaf {
-    /// A corner of the patch: points 3 `corner` .. 3 `corner` + 2 are its limit position and tangents.
-    Corner(u32),
-    /// A B-spline.
-    Bspline {
-        /// Where its points begin in the list.
-        points: u32,
-        /// From one row of points to the next: 4, or 5 in a terminal node.
-        stride: u32,
-        /// Where in it.
-        uv: Vec2,
-        /// By how much its derivatives are shorter than the patch's: 2^depth.
-        scale: f32,
-        /// The edge of a semi-sharp crease, and its sharpness; 0 without one.
-        edge: u32,
-        /// What is left of the sharpness.
-        sharpness: f32,
-        /// The kind of the node.
-        kind: u32,
-    },
-}
-
-/// The corner of the patch at (u, v), if that is one. Corners have stencils of their own, so that level 1 needs nothing else.
-fn corner(uv: Vec2) -> Option<u32> {
-    let [low_u, high_u, low_v, high_v] = [uv.x <= 0.0, uv.x >= 1.0, uv.y <= 0.0, uv.y >= 1.0];
-    match () {
-        _ if low_u && low_v => Some(0),
-        _ if high_u && low_v => Some(1),
-        _ if high_u && high_v => Some(2),
-        _ if low_u && high_v => Some(3),
-        _ => None,
-    }
+pub struct Leaf {
+    /// Where its points begin in the list.
+    pub points: u32,
+    /// From one row of points to the next: 4, or 5 in a terminal node.
+    pub stride: u32,
+    /// Where in it.
+    pub uv: Vec2,
+    /// By how much its derivatives are shorter than the patch's: 2^depth.
+    pub scale: f32,
+    /// The edge of a semi-sharp crease, and its sharpness; 0 without one.
+    pub edge: u32,
+    /// What is left of the sharpness.
+    pub sharpness: f32,
+    /// The kind of the node. [`NodeKind::Extraordinary`](crate::plan::NodeKind) has no points: no tess coordinate inside gets there.
+    pub kind: u32,
 }
 
 /// Whether corner `corner` lies at u = 1, and whether at v = 1.
@@ -47,14 +30,11 @@ fn sides(corner: u32) -> [bool; 2] {
     [corner == 1 || corner == 2, corner >= 2]
 }
 
-/// Walks the quadtree of a plan.
-pub fn walk(plans: Plans, plan: u32, uv: Vec2) -> Leaf {
-    if let Some(corner) = corner(uv) {
-        return Leaf::Corner(corner);
-    }
+/// Walks the quadtree whose root is given. The tree of an edge is walked along v = 0.
+pub fn walk(plans: Plans, root: u32, uv: Vec2) -> Leaf {
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     let upper = uv.cmpge(Vec2::splat(0.5));
-    let mut node = plans.nodes[plans.headers[plan as usize].root as usize];
+    let mut node = plans.nodes[root as usize];
     let mut uv = uv;
     let mut scale = 1.0;
     let mut inside = false;
@@ -72,9 +52,8 @@ pub fn walk(plans: Plans, plan: u32, uv: Vec2) -> Leaf {
 fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {
     let (kind, place, levels) = (node.kind & 15, node.kind >> 4 & 15, node.kind >> 8);
     match kind {
-        abi::NODE_EXTRAORDINARY => Leaf::Corner(place),
         abi::NODE_TERMINAL => terminal(node.points, place, levels, uv, scale),
-        _ => Leaf::Bspline {
+        _ => Leaf {
             points: node.points,
             stride: 4,
             uv,
@@ -93,14 +72,22 @@ fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf
     let distance = Vec2::new(mirror(uv.x, at_u), mirror(uv.y, at_v));
     let level = level_of(distance.max_element());
     if level >= levels {
-        return Leaf::Corner(corner);
+        return Leaf {
+            points: 0,
+            stride: 4,
+            uv: Vec2::ZERO,
+            scale,
+            edge: corner,
+            sharpness: 0.0,
+            kind: abi::NODE_EXTRAORDINARY,
+        };
     }
     let grown = power_of_two(level);
     let local = distance * grown;
     let (far_u, far_v) = (local.x >= 0.5, local.y >= 0.5);
     let (x, y) = (far_u != at_u, far_v != at_v);
     let local = Vec2::new(mirror(local.x, at_u), mirror(local.y, at_v));
-    Leaf::Bspline {
+    Leaf {
         points: points + abi::TERMINAL_POINTS * level + x as u32 + 5 * y as u32,
         stride: 5,
         uv: 2.0 * local - Vec2::new(f32::from(x as u8), f32::from(y as u8)),

@@ -54,6 +54,32 @@ pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<Limi
     Some(own.turned(corner))
 }
 
+/// Which of the faces around a vertex share a tangent plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TangentPlane {
+    /// All of them.
+    Vertex,
+    /// Those of a sector between two infinite creases, which begins with this face.
+    Sector(u32),
+    /// At a cusp each face has its own.
+    Face(u32),
+}
+
+/// The tangent plane that [`limit_stencil`] gives at `corner` of `face`, where it gives one.
+pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlane {
+    let vertex = topology.face(face)[corner as usize];
+    let sharp = topology.sharp_edges(vertex).count();
+    let ring = Ring {
+        topology,
+        fan: topology.fan(face, corner),
+    };
+    match rule(topology.vertex_sharpness(vertex), sharp) {
+        Rule::Smooth | Rule::Dart => TangentPlane::Vertex,
+        Rule::Crease if !ring.is_page() => TangentPlane::Sector(ring.fan.faces[0]),
+        Rule::Crease | Rule::Corner => TangentPlane::Face(face),
+    }
+}
+
 impl LimitStencil {
     /// From the frame of a corner, whose u runs to the next vertex and v to the previous one, to that of the face.
     fn turned(self, corner: u32) -> LimitStencil {

@@ -7,7 +7,7 @@
 use smallvec::SmallVec;
 
 use crate::mesh::sharpness::{decayed, decayed_around_vertex, is_sharp};
-use crate::mesh::topology::Topology;
+use crate::mesh::topology::{FaceCorner, Topology};
 use crate::subdivision::masks::{Mask, edge_point, face_point, vertex_point};
 
 /// A refined topology, and how its vertices come from the parent's.
@@ -82,21 +82,40 @@ pub fn refine(parent: &Topology, cells: &[(u32, u32)]) -> Refinement {
             }
         }
     }
-    let origins = step.origins.iter();
-    let topology = Topology::connect(
-        faces.iter().map(|f| &f[..]),
-        origins
-            .clone()
-            .map(|&origin| step.sharpness(origin))
-            .collect(),
-        parent.options(),
-        |a, b| step.edge(a, b),
-    );
-    Refinement {
-        topology,
-        masks: origins.map(|&origin| step.mask(origin)).collect(),
-        cells: cells.len() as u32,
+    step.finish(&faces, cells.len())
+}
+
+/// Refines the surroundings of edge `edge` and of its two ends, which are all that the limit along the edge depends on. The first
+/// vertices are the child of `from`, which is one of the ends, the edge's middle, and the child of the other end. The first faces are the
+/// children of the `sides`, two each: at `from`, and at the other end.
+pub fn refine_edge(parent: &Topology, edge: u32, from: u32, sides: &[u32]) -> Refinement {
+    let mut step = Step::new(parent);
+    let to = parent.edge(edge).other(from);
+    let kept = [Origin::Vertex(from), Origin::Edge(edge), Origin::Vertex(to)];
+    kept.iter().for_each(|&origin| {
+        step.number(origin);
+    });
+    let corner = |face: u32, vertex: u32| {
+        let corner = parent.face(face).iter().position(|&v| v == vertex);
+        (face, corner.expect("sides have the edge's ends") as u32)
+    };
+    let mut cells: Vec<(u32, u32)> = sides
+        .iter()
+        .flat_map(|&face| [corner(face, from), corner(face, to)])
+        .collect();
+    let count = cells.len();
+    for vertex in [from, to] {
+        for &FaceCorner { face, corner } in parent.vertex_faces(vertex) {
+            if !cells[..count].contains(&(face, corner)) {
+                cells.push((face, corner));
+            }
+        }
     }
+    let faces: Vec<[u32; 4]> = cells
+        .iter()
+        .map(|&(face, corner)| child(parent, face, corner).map(|origin| step.number(origin)))
+        .collect();
+    step.finish(&faces, count)
 }
 
 /// Numbers the vertices of the next level as they are met.
@@ -141,6 +160,25 @@ impl Step<'_> {
             self.origins.push(origin);
         }
         self.numbers[place]
+    }
+
+    /// Connects the faces that were numbered.
+    fn finish(&self, faces: &[[u32; 4]], cells: usize) -> Refinement {
+        let origins = self.origins.iter();
+        let topology = Topology::connect(
+            faces.iter().map(|f| &f[..]),
+            origins
+                .clone()
+                .map(|&origin| self.sharpness(origin))
+                .collect(),
+            self.parent.options(),
+            |a, b| self.edge(a, b),
+        );
+        Refinement {
+            topology,
+            masks: origins.map(|&origin| self.mask(origin)).collect(),
+            cells: cells as u32,
+        }
     }
 
     fn sharpness(&self, origin: Origin) -> f32 {

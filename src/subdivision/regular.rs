@@ -45,14 +45,17 @@ pub struct BsplinePatch {
     pub mirrored: bool,
 }
 
-/// The three points that a corner adds, in the corner's own frame: `along` lies opposite to the next vertex, `beside` opposite to the
-/// previous one, `diagonal` opposite to the face.
-struct CornerPoints {
-    along: ControlPoint,
-    beside: ControlPoint,
-    diagonal: ControlPoint,
+/// The points around a corner that lie outside of the face, in the corner's own frame: `along` lies opposite to the next vertex, `beside`
+/// opposite to the previous one, `diagonal` opposite to the face; `past_previous` and `past_next` beside the face, beyond its edge to
+/// the previous and to the next vertex.
+pub(super) struct CornerPoints {
+    pub along: ControlPoint,
+    pub beside: ControlPoint,
+    pub diagonal: ControlPoint,
+    pub past_previous: ControlPoint,
+    pub past_next: ControlPoint,
     /// The semi-sharp crease through the corner, and whether it follows the edge to the next vertex (else the one to the previous).
-    crease: Option<(bool, f32)>,
+    pub crease: Option<(bool, f32)>,
 }
 
 /// Where the corner's vertex, `along`, `beside` and `diagonal` stand in the 4x4 array, for each corner.
@@ -108,7 +111,8 @@ fn single_crease(
     agree.then_some(Some((edge, sharpness)))
 }
 
-fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPoints> {
+/// The points around a corner of a quad, or None when its vertex is not regular.
+pub(super) fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPoints> {
     let vertices = topology.face(face);
     let [own, next, opposite, previous] = [0, 1, 2, 3].map(|i| vertices[(corner as usize + i) % 4]);
     let fan = topology.fan(face, corner);
@@ -139,18 +143,24 @@ fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPo
             along: ControlPoint::Vertex(end(2)),
             beside: ControlPoint::Mirrored([own, previous]),
             diagonal: ControlPoint::Mirrored([end(2), far(1)]),
+            past_previous: ControlPoint::Vertex(far(1)),
+            past_next: ControlPoint::Mirrored([next, opposite]),
             crease: None,
         }),
         (Rule::Crease, 2) if !semi_sharp => Some(CornerPoints {
             along: ControlPoint::Mirrored([own, next]),
             beside: ControlPoint::Vertex(end(0)),
             diagonal: ControlPoint::Mirrored([end(0), far(0)]),
+            past_previous: ControlPoint::Mirrored([previous, opposite]),
+            past_next: ControlPoint::Vertex(far(0)),
             crease: None,
         }),
         (Rule::Corner, 1) if !semi_sharp => Some(CornerPoints {
             along: ControlPoint::Mirrored([own, next]),
             beside: ControlPoint::Mirrored([own, previous]),
             diagonal: ControlPoint::Corner([own, next, previous, opposite]),
+            past_previous: ControlPoint::Mirrored([previous, opposite]),
+            past_next: ControlPoint::Mirrored([next, opposite]),
             crease: None,
         }),
         _ => None,
@@ -168,6 +178,8 @@ fn interior(
         along: ControlPoint::Vertex(end(at + 2)),
         beside: ControlPoint::Vertex(end(at + 3)),
         diagonal: ControlPoint::Vertex(far(at + 2)),
+        past_previous: ControlPoint::Vertex(far(at + 1)),
+        past_next: ControlPoint::Vertex(far(at + 3)),
         crease,
     }
 }

@@ -11,7 +11,7 @@ use hullform::gpu::{
 };
 use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Prepared, method};
+use hullform::method::{Displacement, Prepared, method};
 use hullform::plan::PlanOptions;
 use hullform::tessellation::Spacing;
 use hullform::{Error, Result};
@@ -83,6 +83,7 @@ impl Gpu {
             gpu: self,
             options,
             reach: reach(model),
+            displacement: Displacement::default(),
             surface: Some(surface?),
         };
         self.device.submit(|cmd| {
@@ -173,6 +174,7 @@ pub struct Loaded<'a> {
     gpu: &'a Gpu,
     options: SurfaceOptions,
     reach: f32,
+    pub displacement: Displacement,
     surface: Option<TessellatedSurface>,
 }
 
@@ -313,6 +315,7 @@ impl Loaded<'_> {
             ],
             eye: [0.0, 0.0, 10.0 * self.reach],
             shading: abi::SHADING_PATCH,
+            displacement: self.displacement,
         }
     }
 

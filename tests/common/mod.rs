@@ -3,6 +3,7 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod edges;
 #[cfg(feature = "host")]
 pub mod gpu;
 pub mod meshes;

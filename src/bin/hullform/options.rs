@@ -153,6 +153,14 @@ fn level(text: &str) -> Result<f32, &'static str> {
     }
 }
 
+/// A share of something, either way.
+pub fn share(text: &str) -> Result<f32, &'static str> {
+    match text.parse() {
+        Ok(share) if (-1.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("expected a number from -1 to 1"),
+    }
+}
+
 fn bytes(text: &str) -> Result<u64, &'static str> {
     let units = [("KiB", 1 << 10), ("MiB", 1 << 20)];
     let stripped = units

@@ -74,6 +74,8 @@ fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>
         "regular": plans.regular,
         "irregular": plans.irregular,
         "plans": plans.plans,
+        "edge_plans": plans.edge_plans,
+        "vertex_plans": plans.vertex_plans,
         "nodes": {
             "internal": internal,
             "regular": regular,
@@ -87,6 +89,7 @@ fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>
             "vertices": plans.vertex_bytes,
             "indices": plans.index_bytes,
             "quadtree": plans.quadtree_bytes,
+            "borders": plans.border_bytes,
             "stencils": plans.stencil_bytes,
             "scratch_worst_case": plans.scratch_worst_case_bytes,
         },

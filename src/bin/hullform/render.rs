@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Prepared, method};
+use hullform::method::{Displacement, Prepared, method};
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -51,6 +51,9 @@ pub struct Arguments {
         allow_hyphen_values = true
     )]
     camera: Camera,
+    /// Displace the surface along its normal by bumps of this height, as a share of the model's diagonal
+    #[arg(long, value_name = "AMOUNT", default_value = "0", value_parser = options::share, allow_hyphen_values = true)]
+    displace: f32,
     /// Write statistics of the drawing as JSON
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
@@ -79,6 +82,7 @@ struct Scene<'a> {
     camera: Camera,
     aspect: f32,
     shading: Shading,
+    displacement: Displacement,
     wireframe: bool,
     ring_bytes: u64,
     slots: Slots,
@@ -141,6 +145,7 @@ fn draw_picture(
         camera: arguments.camera,
         aspect: width as f32 / height as f32,
         shading: arguments.shading,
+        displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
@@ -232,7 +237,7 @@ fn draw_frame(
         drawing.cmd_draw(
             cmd,
             &pipelines[0],
-            &library_view(&view, scene.shading.code()),
+            &library_view(&view, scene),
             scene.cut,
             batches,
         );
@@ -247,7 +252,10 @@ fn draw_frame(
             drawing.cmd_draw(
                 cmd,
                 lines,
-                &library_view(&view, abi::SHADING_LINES),
+                &gpu::View {
+                    shading: abi::SHADING_LINES,
+                    ..library_view(&view, scene)
+                },
                 scene.cut,
                 &again,
             );
@@ -333,12 +341,23 @@ impl Scene<'_> {
 }
 
 /// The view as the library takes it.
-fn library_view(view: &View, shading: u32) -> gpu::View {
+fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
     let eye = view.eye_from_model.inverse().transform_point3(Vec3::ZERO);
     gpu::View {
         clip_from_model: view.clip_from_model().to_cols_array_2d(),
         eye: eye.to_array(),
-        shading,
+        shading: scene.shading.code(),
+        displacement: scene.displacement,
+    }
+}
+
+/// Bumps as high as a share of the model's diagonal, a few dozen of them along it.
+fn bumps(model: &Model, share: f32) -> Displacement {
+    let (low, high) = model.mesh().bounds();
+    let diagonal = low.distance(high) as f32;
+    Displacement {
+        height: share * diagonal,
+        frequency: 30.0 / diagonal.max(f32::MIN_POSITIVE),
     }
 }
 

@@ -10,7 +10,7 @@ use glam::Vec3;
 use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{Pass, method, to_ptex};
+use hullform::method::{Displacement, Pass, method, to_ptex};
 use hullform::tessellation::triangulate;
 use hullform::{Error, Result, abi};
 use serde_json::json;
@@ -108,6 +108,7 @@ fn capture_batch(
         clip_from_model: [[0.0; 4]; 4],
         eye: [0.0; 3],
         shading: abi::SHADING_LIT,
+        displacement: Displacement::default(),
     };
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {

@@ -1,0 +1,33 @@
+// A procedural displacement along the normal, to show that it opens no cracks. Twin of `method::Displacement`.
+#ifndef DISPLACEMENT_GLSL
+#define DISPLACEMENT_GLSL
+
+#include "lib/interface.glsl"
+#include "lib/surface.glsl"
+
+// Bumps on a lattice, 0..1, smooth once; and their slope along each axis.
+float bumps(vec3 at, out vec3 slope) {
+    precise vec3 f = at - floor(at);
+    precise vec3 rest = 1.0 - f;
+    precise vec3 wave = (f * rest) * (f * rest) * 16.0;
+    precise float height = ((wave.x + wave.y) + wave.z) / 3.0;
+    precise vec3 steep = (f * rest) * (rest - f) * (32.0 / 3.0);
+    slope = steep;
+    return height;
+}
+
+// Moves a point along its normal; the normal follows to first order. Nothing but position and normal has a say: where faces have the same bits
+// of both, they still have them afterwards.
+void displace(inout vec3 position, inout vec3 normal) {
+    vec3 slope;
+    precise vec3 at = position * frame.displacement.y;
+    float height = bumps(at, slope);
+    precise vec3 moved = position + (frame.displacement.x * height) * normal;
+    precise vec3 gradient = slope * (frame.displacement.x * frame.displacement.y);
+    precise float along = (gradient.x * normal.x + gradient.y * normal.y) + gradient.z * normal.z;
+    precise vec3 tilted = normal - (gradient - along * normal);
+    position = moved;
+    normal = normalize_or_zero(tilted);
+}
+
+#endif

@@ -1,0 +1,506 @@
+//! The borders of patches: by which plans of edges and vertices each is evaluated on its edges and at its corners.
+//!
+//! An edge's plan, the order of its vertices and its direction come from the edge alone, and a vertex's from the vertex alone, so all faces
+//! there compute the same bits. Where edge and vertex are plain (smooth, four quads around each vertex) no plan is needed: B-splines
+//! whose sums are symmetric give the same bits to all sides by themselves, to patches without plans as well.
+
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::abi;
+use crate::mesh::sharpness::is_sharp;
+use crate::mesh::topology::Topology;
+use crate::method::patches::Part;
+use crate::plan::{
+    Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, VertexKind, VertexPlan,
+};
+
+/// An irregular patch: its part, its ring, and the number of its plan.
+pub struct Irregular {
+    pub part: Part,
+    pub ring: Ring,
+    pub plan: u32,
+}
+
+/// An edge of a patch that has a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Line {
+    /// An edge of the mesh.
+    Edge(u32),
+    /// From the middle of an n-gon's edge to its centre.
+    Spoke { face: u32, corner: u32 },
+}
+
+/// A corner of a patch that has a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Point {
+    Vertex(u32),
+    Centre(u32),
+}
+
+/// Something that has a plan of its own, and shares it with what looks alike.
+trait Subject: Copy + Eq + std::hash::Hash + Send + Sync {
+    type Plan: Send + Sync;
+    fn ring(self, topology: &Topology) -> Ring;
+    fn build(self, configuration: &Configuration, options: PlanOptions) -> Self::Plan;
+    fn stencils(plan: &Self::Plan) -> &Plan;
+    /// Whether it lies inside an n-gon: the configuration is the n-gon's then.
+    fn is_inside(self) -> bool;
+}
+
+impl Subject for Line {
+    type Plan = EdgePlan;
+
+    fn ring(self, topology: &Topology) -> Ring {
+        match self {
+            Line::Edge(edge) => Ring::of_edge(topology, edge),
+            Line::Spoke { face, corner } => Ring::from_corner(topology, face, corner),
+        }
+    }
+
+    fn build(self, configuration: &Configuration, options: PlanOptions) -> EdgePlan {
+        let kind = if self.is_inside() {
+            EdgeKind::Spoke
+        } else {
+            EdgeKind::Whole
+        };
+        EdgePlan::build(configuration, kind, options)
+    }
+
+    fn stencils(plan: &EdgePlan) -> &Plan {
+        &plan.plan
+    }
+
+    fn is_inside(self) -> bool {
+        matches!(self, Line::Spoke { .. })
+    }
+}
+
+impl Subject for Point {
+    type Plan = VertexPlan;
+
+    fn ring(self, topology: &Topology) -> Ring {
+        match self {
+            Point::Vertex(vertex) => Ring::of_vertex(topology, vertex),
+            Point::Centre(face) => Ring::from_corner(topology, face, 0),
+        }
+    }
+
+    fn build(self, configuration: &Configuration, options: PlanOptions) -> VertexPlan {
+        let kind = if self.is_inside() {
+            VertexKind::Centre
+        } else {
+            VertexKind::Control
+        };
+        VertexPlan::build(configuration, kind, options)
+    }
+
+    fn stencils(plan: &VertexPlan) -> &Plan {
+        &plan.plan
+    }
+
+    fn is_inside(self) -> bool {
+        matches!(self, Point::Centre(_))
+    }
+}
+
+/// The rings and plans of subjects of one kind.
+struct Shared<S: Subject> {
+    /// Each subject's ring, and the number of its plan.
+    known: FxHashMap<S, (Ring, usize)>,
+    plans: Vec<S::Plan>,
+    /// The number of the first among all packed plans.
+    first: u32,
+}
+
+impl<S: Subject> Shared<S> {
+    fn new(
+        topology: &Topology,
+        subjects: impl Iterator<Item = S>,
+        packed: &mut PackedPlans,
+        options: PlanOptions,
+    ) -> Shared<S> {
+        let mut seen = FxHashSet::default();
+        let subjects: Vec<S> = subjects.filter(|&subject| seen.insert(subject)).collect();
+        let rings: Vec<Ring> = subjects
+            .par_iter()
+            .map(|&subject| subject.ring(topology))
+            .collect();
+        let mut numbers: FxHashMap<(bool, &Configuration), usize> = FxHashMap::default();
+        let mut firsts: Vec<usize> = Vec::new();
+        let plans: Vec<usize> = subjects
+            .iter()
+            .enumerate()
+            .map(|(i, subject)| {
+                let key = (subject.is_inside(), &rings[i].configuration);
+                *numbers.entry(key).or_insert_with(|| {
+                    firsts.push(i);
+                    firsts.len() - 1
+                })
+            })
+            .collect();
+        let built: Vec<S::Plan> = firsts
+            .par_iter()
+            .map(|&i| subjects[i].build(&rings[i].configuration, options))
+            .collect();
+        let first = packed.headers.len() as u32;
+        built.iter().for_each(|plan| packed.push(S::stencils(plan)));
+        let rings = rings.into_iter().zip(plans);
+        Shared {
+            known: subjects.into_iter().zip(rings).collect(),
+            plans: built,
+            first,
+        }
+    }
+}
+
+/// Borders, each once.
+#[derive(Default)]
+pub struct Borders {
+    /// The borders.
+    pub records: Vec<abi::Border>,
+    /// Of each irregular patch: the number of its border.
+    pub numbers: Vec<u32>,
+    /// Which vertices of a patch's ring take part in an edge, vertex or plain points: lists one behind the other.
+    pub places: Vec<u32>,
+    /// How many different plans of edges there are.
+    pub edge_plans: usize,
+    /// How many different plans of vertices there are.
+    pub vertex_plans: usize,
+}
+
+/// Whether a vertex is smooth and has four quads around it: it needs no plan.
+pub fn is_plain_vertex(topology: &Topology, vertex: u32) -> bool {
+    let faces = topology.vertex_faces(vertex);
+    faces.len() == 4
+        && topology.vertex_edges(vertex).len() == 4
+        && faces.iter().all(|at| topology.face(at.face).len() == 4)
+        && !is_sharp(topology.vertex_sharpness(vertex))
+        && topology.sharp_edges(vertex).next().is_none()
+}
+
+fn is_plain_edge(topology: &Topology, edge: u32) -> bool {
+    let ends = topology.edge(edge).vertices;
+    ends.iter().all(|&vertex| is_plain_vertex(topology, vertex))
+}
+
+/// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
+/// vertex's edges that have the lowest number.
+pub fn is_turned_corner(topology: &Topology, face: u32, corner: u32) -> bool {
+    let edges = topology.fan(face, corner);
+    let lowest = edges.edges.iter().min().expect("a vertex has edges");
+    let at = |i: usize| &edges.edges[(edges.at + i) % 4];
+    at(1) == lowest || at(3) == lowest
+}
+
+/// A part's edges: which line it is, whether the part has a half of it, and the corner of the face that the line begins with.
+fn lines(topology: &Topology, part: Part, turn: u32) -> [(Line, u32, u32); 4] {
+    let edges = topology.face_edges(part.face);
+    let n = edges.len() as u32;
+    let edge = |corner: u32| Line::Edge(edges[corner as usize]);
+    if n == 4 {
+        return [0, 1, 2, 3].map(|i| (edge((turn + i) % 4), 0, (turn + i) % 4));
+    }
+    let (face, corner) = (part.face, part.corner);
+    let before = (corner + n - 1) % n;
+    [
+        (edge(corner), abi::USE_FIRST_HALF, corner),
+        (Line::Spoke { face, corner }, 0, 0),
+        (
+            Line::Spoke {
+                face,
+                corner: before,
+            },
+            abi::USE_FLIPPED,
+            0,
+        ),
+        (edge(before), abi::USE_SECOND_HALF, before),
+    ]
+}
+
+/// A part's corners; None for the middles of edges.
+fn points(topology: &Topology, part: Part, turn: u32) -> [Option<Point>; 4] {
+    let vertices = topology.face(part.face);
+    if vertices.len() == 4 {
+        return [0, 1, 2, 3].map(|i| Some(Point::Vertex(vertices[((turn + i) % 4) as usize])));
+    }
+    let own = Point::Vertex(vertices[part.corner as usize]);
+    [Some(own), None, Some(Point::Centre(part.face)), None]
+}
+
+impl Irregular {
+    /// The corner of the quad at which the patch begins.
+    pub fn turn(&self, topology: &Topology) -> u32 {
+        if topology.face(self.part.face).len() == 4 {
+            self.ring.start
+        } else {
+            0
+        }
+    }
+}
+
+impl Borders {
+    /// Finds the borders of irregular patches, whose plans are packed, and packs those of edges and vertices.
+    pub fn new(
+        topology: &Topology,
+        patches: &[Irregular],
+        packed: &mut PackedPlans,
+        options: PlanOptions,
+    ) -> Borders {
+        let lines = patches.iter().flat_map(|patch| {
+            let lines = lines(topology, patch.part, patch.turn(topology));
+            lines.into_iter().map(|(line, ..)| line)
+        });
+        let lines = lines
+            .filter(|&line| !matches!(line, Line::Edge(edge) if is_plain_edge(topology, edge)));
+        let lines = Shared::new(topology, lines, packed, options);
+        let vertices = patches.iter().flat_map(|patch| {
+            let points = points(topology, patch.part, patch.turn(topology));
+            points.into_iter().flatten()
+        });
+        let vertices = vertices.filter(
+            |&point| !matches!(point, Point::Vertex(vertex) if is_plain_vertex(topology, vertex)),
+        );
+        let vertices = Shared::new(topology, vertices, packed, options);
+        let mut builder = Builder {
+            topology,
+            lines: &lines,
+            vertices: &vertices,
+            packed,
+            lists: FxHashMap::default(),
+            nodes: FxHashMap::default(),
+            borders: FxHashMap::default(),
+            found: Borders {
+                edge_plans: lines.plans.len(),
+                vertex_plans: vertices.plans.len(),
+                ..Borders::default()
+            },
+        };
+        for patch in patches {
+            let border = builder.border(patch);
+            let number = builder.number(border);
+            builder.found.numbers.push(number);
+        }
+        builder.found
+    }
+}
+
+/// Puts borders together.
+struct Builder<'a> {
+    topology: &'a Topology,
+    lines: &'a Shared<Line>,
+    vertices: &'a Shared<Point>,
+    packed: &'a mut PackedPlans,
+    /// Where lists of places begin.
+    lists: FxHashMap<Vec<u32>, u32>,
+    /// Nodes of plain edges and vertices by their points.
+    nodes: FxHashMap<[u32; 16], u32>,
+    borders: FxHashMap<Vec<u32>, u32>,
+    found: Borders,
+}
+
+/// The plain vertices of a patch as they are met, as places in its ring.
+struct Plain<'a> {
+    ring: FxHashMap<u32, u32>,
+    places: &'a mut Vec<u32>,
+}
+
+impl Plain<'_> {
+    /// The number, among the plain points, of a vertex of the mesh.
+    fn point(&mut self, vertex: u32) -> u32 {
+        let place = self.ring[&vertex];
+        let known = self.places.iter().position(|&known| known == place);
+        known.unwrap_or_else(|| {
+            self.places.push(place);
+            self.places.len() - 1
+        }) as u32
+    }
+}
+
+impl Builder<'_> {
+    fn border(&mut self, patch: &Irregular) -> abi::Border {
+        let (topology, turn) = (self.topology, patch.turn(self.topology));
+        let ring = (0..).zip(&patch.ring.vertices);
+        let ring: FxHashMap<u32, u32> = ring.map(|(place, &vertex)| (vertex, place)).collect();
+        let mut border = abi::Border::default();
+        border.plans[0] = patch.plan;
+        border.roots[0] = self.packed.headers[patch.plan as usize].root;
+        let mut places = Vec::new();
+        let mut plain = Plain {
+            ring,
+            places: &mut places,
+        };
+        for (edge, (line, flags, corner)) in (0..).zip(lines(topology, patch.part, turn)) {
+            let number = 1 + edge as usize;
+            match self.lines.known.get(&line) {
+                Some((ring, plan)) => {
+                    let flags = flags ^ self.line_flags(patch.part.face, corner, line, ring, *plan);
+                    let flipped = 2 * (flags & abi::USE_FLIPPED);
+                    border.flags[number] = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
+                    self.planned(
+                        &mut border,
+                        number,
+                        self.lines.first + *plan as u32,
+                        ring,
+                        &plain,
+                    );
+                }
+                None => {
+                    border.plans[number] = abi::NO_PLAN;
+                    border.flags[number] = edge << abi::USE_TURN_SHIFT;
+                    let vertices = edge_rows(topology, patch.part.face, corner);
+                    border.roots[number] =
+                        self.plain_node(vertices.map(|vertex| plain.point(vertex)));
+                }
+            }
+        }
+        for (corner, point) in (0..).zip(points(topology, patch.part, turn)) {
+            let number = 5 + corner as usize;
+            border.plans[number] = abi::NO_PLAN;
+            let Some(point) = point else { continue };
+            match self.vertices.known.get(&point) {
+                Some((ring, plan)) => {
+                    let local = ring.faces.iter().position(|&face| face == patch.part.face);
+                    let pairs = &self.vertices.plans[*plan].pairs;
+                    let pair = match point {
+                        Point::Vertex(_) => pairs[local.expect("the face has the vertex")],
+                        Point::Centre(_) => pairs[0],
+                    };
+                    let creased = pairs.iter().any(|&other| other != pairs[0]);
+                    let creased = if creased { abi::USE_CREASED } else { 0 };
+                    border.flags[number] = abi::USE_LIMIT | creased | pair << abi::USE_SIDE_SHIFT;
+                    self.planned(
+                        &mut border,
+                        number,
+                        self.vertices.first + *plan as u32,
+                        ring,
+                        &plain,
+                    );
+                }
+                None => {
+                    let face_corner = (turn + corner) % 4;
+                    let turned = is_turned_corner(topology, patch.part.face, face_corner);
+                    let quarters = (corner + u32::from(turned)) % 4;
+                    border.flags[number] = quarters << abi::USE_TURN_SHIFT;
+                    let vertices = vertex_rows(topology, patch.part.face, face_corner, turned);
+                    border.roots[number] =
+                        self.plain_node(vertices.map(|vertex| plain.point(vertex)));
+                }
+            }
+        }
+        border.plain_count = places.len() as u32;
+        border.plain = self.list(places);
+        border.counts = self.counts(&border);
+        border
+    }
+
+    /// Which side of the line the face is on, and whether it runs the other way.
+    fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: usize) -> u32 {
+        let Line::Edge(_) = line else { return 0 };
+        let sides = &self.lines.plans[plan].sides;
+        let local = |&side: &u32| ring.faces[side as usize] == face;
+        let side = sides.iter().position(local).unwrap_or(0) as u32;
+        let creased = if sides.len() > 1 { abi::USE_CREASED } else { 0 };
+        let flipped = self.topology.face(face)[corner as usize] != ring.vertices[0];
+        side << abi::USE_SIDE_SHIFT | creased | if flipped { abi::USE_FLIPPED } else { 0 }
+    }
+
+    fn planned(
+        &mut self,
+        border: &mut abi::Border,
+        number: usize,
+        plan: u32,
+        ring: &Ring,
+        plain: &Plain<'_>,
+    ) {
+        border.plans[number] = plan;
+        if border.flags[number] & abi::USE_LIMIT == 0 {
+            border.roots[number] = self.packed.headers[plan as usize].root;
+        }
+        let places = ring.vertices.iter().map(|vertex| plain.ring[vertex]);
+        border.rings[number] = self.list(places.collect());
+    }
+
+    /// Where a list of places begins.
+    fn list(&mut self, places: Vec<u32>) -> u32 {
+        let all = &mut self.found.places;
+        *self.lists.entry(places).or_insert_with_key(|places| {
+            all.extend_from_slice(places);
+            (all.len() - places.len()) as u32
+        })
+    }
+
+    /// The node of a B-spline of plain points.
+    fn plain_node(&mut self, points: [u32; 16]) -> u32 {
+        let packed = &mut *self.packed;
+        *self
+            .nodes
+            .entry(points)
+            .or_insert_with(|| packed.push_bspline(&points))
+    }
+
+    /// The points of the slot: a head for each use, the plain points, then those of the plans.
+    fn counts(&self, border: &abi::Border) -> [u32; abi::HIGHEST_LEVEL as usize + 1] {
+        std::array::from_fn(|level| {
+            let planned =
+                (0..abi::USES as usize).filter(|&number| border.plans[number] != abi::NO_PLAN);
+            let points = planned.map(|number| {
+                let halves = abi::USE_FIRST_HALF | abi::USE_SECOND_HALF;
+                let deeper = usize::from(border.flags[number] & halves != 0);
+                let level = level + deeper;
+                match border.flags[number] & abi::USE_LIMIT {
+                    0 => self.packed.headers[border.plans[number] as usize].counts[level],
+                    _ => 3,
+                }
+            });
+            abi::USES + border.plain_count + points.sum::<u32>()
+        })
+    }
+
+    fn number(&mut self, border: abi::Border) -> u32 {
+        let records = &mut self.found.records;
+        let words = bytemuck::cast_slice(std::slice::from_ref(&border)).to_vec();
+        *self.borders.entry(words).or_insert_with(|| {
+            records.push(border);
+            records.len() as u32 - 1
+        })
+    }
+}
+
+/// The nine vertices around a plain vertex, row by row, in the frame of a corner: u runs to the next vertex and v to the previous one.
+fn block(topology: &Topology, face: u32, corner: u32) -> [[u32; 3]; 3] {
+    let fan = topology.fan(face, corner);
+    let end = |i: usize| topology.edge(fan.edges[(fan.at + i) % 4]).other(fan.vertex);
+    let far = |i: usize| {
+        let vertices = topology.face(fan.faces[(fan.at + i) % 4]);
+        let own = vertices.iter().position(|&vertex| vertex == fan.vertex);
+        vertices[(own.expect("the fan's faces touch its vertex") + 2) % 4]
+    };
+    [
+        [far(2), end(3), far(3)],
+        [end(2), fan.vertex, end(0)],
+        [far(1), end(1), far(0)],
+    ]
+}
+
+/// The vertices around a plain edge, number x + 4 y, u along the face's edge from its corner on. Row 3 has no weight there.
+fn edge_rows(topology: &Topology, face: u32, corner: u32) -> [u32; 16] {
+    let near = block(topology, face, corner);
+    // The other corner's frame is turned by a quarter: its u runs into the face, its v back along the edge.
+    let far = block(topology, face, (corner + 1) % 4);
+    let row = |y: usize| [near[y][0], near[y][1], far[1][y], far[0][y]];
+    [row(0), row(1), row(2), row(1)]
+        .concat()
+        .try_into()
+        .expect("four rows of four")
+}
+
+/// The vertices around a plain vertex, number x + 4 y, in the frame of a corner, or in one turned by a quarter. Column and row 3 have no
+/// weight there.
+fn vertex_rows(topology: &Topology, face: u32, corner: u32, turned: bool) -> [u32; 16] {
+    let block = block(topology, face, corner);
+    std::array::from_fn(|i| {
+        let [x, y] = [i % 4, i / 4].map(|i| if i == 3 { 1 } else { i });
+        if turned { block[x][2 - y] } else { block[y][x] }
+    })
+}

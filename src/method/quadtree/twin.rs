@@ -1,0 +1,317 @@
+//! What the evaluation shaders of the method compute, on the CPU, from the same bytes and in the same order of operations.
+//!
+//! On its edges and at its corners a patch is not evaluated by its own plan but by those of the edges and vertices, which all faces there
+//! share: that gives all of them the same bits. Twin of `glsl/method/quadtree.glsl` and `glsl/method/quadtree_regular.glsl`.
+
+use glam::{Vec2, Vec3};
+
+use crate::abi;
+use crate::method::{Pass, Surface};
+use crate::patch::bspline::{Basis, basis, basis_of};
+use crate::patch::crease::crease_basis;
+use crate::plan::{Leaf, Plans, walk};
+
+/// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    Inside,
+    /// On an edge: where along it, counter-clockwise, and what is left of it.
+    Edge(u32, [f32; 2]),
+    Corner(u32),
+}
+
+fn place(flags: u32, uv: Vec2) -> Place {
+    let (low, high) = (uv.cmple(Vec2::ZERO), uv.cmpge(Vec2::ONE));
+    let corner = match (high.x, high.y) {
+        (false, false) => 0,
+        (true, false) => 1,
+        (true, true) => 2,
+        (false, true) => 3,
+    };
+    // Corners 1 and 3 of an n-gon's part are the middles of edges.
+    let middle = flags & abi::PATCH_HALF != 0 && corner % 2 == 1;
+    if (low.x || high.x) && (low.y || high.y) && !middle {
+        return Place::Corner(corner);
+    }
+    let (edge, along, backwards) = match () {
+        () if low.y => (0, uv.x, false),
+        () if low.x => (3, uv.y, true),
+        () if high.x => (1, uv.y, false),
+        () if high.y => (2, uv.x, true),
+        () => return Place::Inside,
+    };
+    Place::Edge(edge, turned_round(along, backwards))
+}
+
+/// t and 1 - t, exchanged if `backwards`. The smaller of both is exact: so both directions have the same pair.
+fn turned_round(t: f32, backwards: bool) -> [f32; 2] {
+    let small = if t > 0.5 { 1.0 - t } else { t };
+    let pair = [small, 1.0 - small];
+    if (t > 0.5) != backwards {
+        [pair[1], pair[0]]
+    } else {
+        pair
+    }
+}
+
+/// Sum of four weighted points, the same bits from either end: on edges and at corners one of the outer weights is zero, and the others
+/// are symmetric about the second or third point. Twin of `blend` in `glsl/lib/bspline.glsl`.
+fn blend(w: [f32; 4], p: [Vec3; 4]) -> Vec3 {
+    (w[0] * p[0] + w[2] * p[2]) + (w[1] * p[1] + w[3] * p[3])
+}
+
+/// The products of two bases, with control points from `point`; rows along u first.
+fn bspline(
+    u: Basis<f32>,
+    v: Basis<f32>,
+    scale: f32,
+    point: impl Fn(usize, usize) -> Vec3,
+) -> Surface {
+    let rows = [0, 1, 2, 3].map(|y| [0, 1, 2, 3].map(|x| point(x, y)));
+    let values = rows.map(|row| blend(u.value, row));
+    let derivatives = rows.map(|row| blend(u.derivative, row));
+    Surface {
+        position: blend(v.value, values),
+        du: scale * blend(v.value, derivatives),
+        dv: scale * blend(v.derivative, values),
+    }
+}
+
+/// A plain B-spline patch. On edges the sums go along the edge first, at corners along the direction that the vertex prefers.
+pub fn regular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
+    let abi::Patch {
+        controls, flags, ..
+    } = pass.patches[patch];
+    let controls = &pass.controls[controls as usize..];
+    let point = |x: usize, y: usize| positions[controls[x + 4 * y] as usize];
+    let place = place(flags, uv);
+    let turned = match place {
+        Place::Inside => false,
+        Place::Edge(edge, _) => edge % 2 == 1,
+        Place::Corner(corner) => flags & (abi::PATCH_TURNED_CORNER << corner) != 0,
+    };
+    let [u, v] = [uv.x, uv.y].map(|t| {
+        let [t, s] = turned_round(t, false);
+        basis_of(t, s)
+    });
+    if !turned {
+        return bspline(u, v, 1.0, point);
+    }
+    let Surface { position, du, dv } = bspline(v, u, 1.0, |x, y| point(y, x));
+    Surface {
+        position,
+        du: dv,
+        dv: du,
+    }
+}
+
+/// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first
+/// vertex: tangents deep in the tree are differences of small numbers then, instead of small differences of large ones.
+pub fn irregular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
+    let plans = plans(pass);
+    let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[4]);
+    let abi::Patch {
+        controls,
+        plan,
+        flags,
+        ..
+    } = pass.patches[patch];
+    let border = &borders[plan as usize];
+    let (number, uv) = match place(flags, uv) {
+        Place::Inside => (0, uv),
+        Place::Edge(edge, t) => (
+            1 + edge,
+            Vec2::new(on_edge(border.flags[1 + edge as usize], t), 0.0),
+        ),
+        Place::Corner(corner) => (5 + corner, Vec2::ZERO),
+    };
+    let one_use = Use {
+        pass,
+        plans,
+        border,
+        controls,
+        number: number as usize,
+    };
+    let flags = border.flags[number as usize];
+    let ring = one_use.ring(positions);
+    let origin = match border.plans[number as usize] {
+        abi::NO_PLAN => Vec3::ZERO,
+        _ => ring[0],
+    };
+    let local: Vec<Vec3> = ring.iter().map(|&point| point - origin).collect();
+    let side = flags >> abi::USE_SIDE_SHIFT;
+    let surface = if flags & abi::USE_LIMIT != 0 {
+        let stencil = |number: u32| one_use.point(&local, number);
+        Surface {
+            position: stencil(0),
+            du: stencil(1 + 2 * side),
+            dv: stencil(2 + 2 * side),
+        }
+    } else {
+        one_use.evaluate(&local, uv, side)
+    };
+    let Surface { position, du, dv } = turned(surface, flags >> abi::USE_TURN_SHIFT & 3);
+    // Half of the edge is the whole patch.
+    let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
+    let scale = if half { 0.5 } else { 1.0 };
+    Surface {
+        position: position + origin,
+        du: scale * du,
+        dv: scale * dv,
+    }
+}
+
+/// From along a patch's edge to along the whole edge in its own direction.
+fn on_edge(flags: u32, [t, s]: [f32; 2]) -> f32 {
+    let [t, s] = match () {
+        () if flags & abi::USE_FIRST_HALF != 0 => [0.5 * t, 0.5 + 0.5 * s],
+        () if flags & abi::USE_SECOND_HALF != 0 => [0.5 + 0.5 * t, 0.5 * s],
+        () => [t, s],
+    };
+    if flags & abi::USE_FLIPPED != 0 { s } else { t }
+}
+
+/// Derivatives in the patch's frame, from one that is turned by so many quarters.
+fn turned(Surface { position, du, dv }: Surface, quarters: u32) -> Surface {
+    let (du, dv) = match quarters {
+        0 => (du, dv),
+        1 => (-dv, du),
+        2 => (-du, -dv),
+        _ => (dv, -du),
+    };
+    Surface { position, du, dv }
+}
+
+/// What a patch is evaluated by at some place.
+struct Use<'a> {
+    pass: &'a Pass,
+    plans: Plans<'a>,
+    border: &'a abi::Border,
+    /// Where the patch's ring begins.
+    controls: u32,
+    number: usize,
+}
+
+impl Use<'_> {
+    /// Where its control vertices are.
+    fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let vertex = |place: u32| self.pass.controls[(self.controls + place) as usize];
+        let place = |start: u32, i: u32| self.pass.controls[(start + i) as usize];
+        let plan = self.border.plans[self.number];
+        let vertices: Vec<u32> = match plan {
+            abi::NO_PLAN => (0..self.border.plain_count)
+                .map(|i| vertex(place(self.border.plain, i)))
+                .collect(),
+            _ => (0..self.plans.headers[plan as usize].ring_size)
+                .map(|i| match self.number {
+                    0 => vertex(i),
+                    number => vertex(place(self.border.rings[number], i)),
+                })
+                .collect(),
+        };
+        vertices
+            .iter()
+            .map(|&vertex| positions[vertex as usize])
+            .collect()
+    }
+
+    /// Point `number` of its slot.
+    fn point(&self, ring: &[Vec3], number: u32) -> Vec3 {
+        let plan = self.border.plans[self.number];
+        if plan == abi::NO_PLAN {
+            return ring[number as usize];
+        }
+        let header = self.plans.headers[plan as usize];
+        weighted_sum(
+            ring,
+            &self.plans.weights[(header.weights + number * header.ring_size) as usize..],
+        )
+    }
+
+    fn evaluate(&self, ring: &[Vec3], uv: Vec2, side: u32) -> Surface {
+        let leaf = walk(self.plans, self.border.roots[self.number], uv);
+        let Leaf {
+            points,
+            stride,
+            uv,
+            scale,
+            edge,
+            sharpness,
+            kind,
+        } = leaf;
+        let (u, mut v) = creased(uv, edge, sharpness);
+        if kind == abi::NODE_CURVE {
+            v = CURVE;
+        }
+        let points = points + 16 * side;
+        bspline(u, v, scale, |x, y| {
+            self.point(
+                ring,
+                self.plans.point(points + x as u32 + stride * y as u32),
+            )
+        })
+    }
+}
+
+/// Row 1 is the position on an edge, row 2 that plus the derivative across.
+const CURVE: Basis<f32> = Basis {
+    value: [0.0, 1.0, 0.0, 0.0],
+    derivative: [0.0, -1.0, 1.0, 0.0],
+};
+
+/// The sum of weighted points, in the order and the manner of the control shader: rings of more than 32 vertices are summed with
+/// compensation (Kahan 1965), since where hundreds of faces meet, the tangents of neighbours differ by less than a plain sum would lose.
+fn weighted_sum(points: &[Vec3], weights: &[f32]) -> Vec3 {
+    let terms = points
+        .iter()
+        .zip(weights)
+        .map(|(&point, &weight)| weight * point);
+    if points.len() <= abi::CONTROL_INVOCATIONS as usize {
+        return terms.fold(Vec3::ZERO, |sum, term| sum + term);
+    }
+    let (mut sum, mut lost) = (Vec3::ZERO, Vec3::ZERO);
+    for term in terms {
+        let rest = term - lost;
+        let next = sum + rest;
+        lost = (next - sum) - rest;
+        sum = next;
+    }
+    sum
+}
+
+/// The bases in both directions; across a crease on one of the edges the crease's own. Twin of `glsl/lib/crease.glsl`.
+fn creased(uv: Vec2, edge: u32, sharpness: f32) -> (Basis<f32>, Basis<f32>) {
+    let (mut u, mut v) = (basis(uv.x), basis(uv.y));
+    if sharpness > 0.0 {
+        match edge {
+            0 => v = crease_basis(uv.y, sharpness),
+            1 => u = reversed(crease_basis(1.0 - uv.x, sharpness)),
+            2 => v = reversed(crease_basis(1.0 - uv.y, sharpness)),
+            _ => u = crease_basis(uv.x, sharpness),
+        }
+    }
+    (u, v)
+}
+
+/// The basis of the curve run backwards.
+fn reversed(basis: Basis<f32>) -> Basis<f32> {
+    let Basis {
+        mut value,
+        mut derivative,
+    } = basis;
+    value.reverse();
+    derivative.reverse();
+    Basis {
+        value,
+        derivative: derivative.map(|weight| -weight),
+    }
+}
+
+fn plans(pass: &Pass) -> Plans<'_> {
+    Plans {
+        headers: bytemuck::cast_slice(&pass.tables[0]),
+        nodes: bytemuck::cast_slice(&pass.tables[1]),
+        points: &pass.tables[2],
+        weights: bytemuck::cast_slice(&pass.tables[3]),
+    }
+}

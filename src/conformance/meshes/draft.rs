@@ -62,8 +62,9 @@ impl Draft {
         let middle = self.middle(face);
         let ring = std::mem::take(&mut self.parts.faces[face]);
         let triangle = |i: usize| vec![ring[i], ring[(i + 1) % ring.len()], middle];
-        self.parts.faces[face] = triangle(0);
-        self.parts.faces.extend((1..ring.len()).map(triangle));
+        let mut triangles: Vec<Vec<u32>> = (0..ring.len()).map(triangle).collect();
+        self.parts.faces[face] = triangles.swap_remove(0);
+        self.parts.faces.extend(triangles);
     }
 
     /// More edges at a corner of a face.

@@ -78,7 +78,8 @@
 //! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
 //!
 //! **The device** needs Vulkan 1.2 and three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`.
-//! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on.
+//! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on. With `vulkanMemoryModel` also switch on `vulkanMemoryModelDeviceScope`:
+//! our shaders' atomic operations have device scope.
 //!
 //! **The render pass** needs one thing: the subpass must depend on itself as `gpu::ring::ring_dependency` says. Control shaders hand points
 //! to evaluation shaders through a ring in memory; batches that use it one after another have a barrier between them.

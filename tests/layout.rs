@@ -14,8 +14,15 @@ use hullform::gpu::shaders::MODULES;
 const TABLE_1: u32 = abi::BINDING_TABLES + 1;
 const TABLE_4: u32 = abi::BINDING_TABLES + 4;
 
-/// Every module: as it ships, and as this build has it.
+/// Every module that shares `abi` with the library: all but those of the conformance suite.
 fn modules() -> Vec<(String, Vec<u8>)> {
+    let all = all_modules().into_iter();
+    all.filter(|(name, _)| !name.starts_with("conformance."))
+        .collect()
+}
+
+/// Every module: as it ships, and as this build has it.
+fn all_modules() -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/spirv");
     let shipped = fs::read_dir(folder).expect("glsl/spirv is a folder");
     let shipped = shipped
@@ -113,6 +120,46 @@ fn compiled_arrays_have_the_strides_of_the_buffers() {
         }
     }
     assert_eq!(seen.len(), 6, "each of these buffers is in some module");
+}
+
+/// The buffers and push constants of the conformance suite: the beginning of the modules' names, the block, and the words of a struct there.
+/// Each struct is declared once in Rust too, beside the code that fills it, where an assertion holds it to the same number.
+const SUITE: [(&str, Block, usize); 5] = [
+    (
+        "conformance.coordinates.tesc",
+        Block::Buffer { binding: 0 },
+        2,
+    ),
+    (
+        "conformance.coordinates.tese",
+        Block::Buffer { binding: 1 },
+        2,
+    ),
+    ("conformance.scale.", Block::PushConstants, 7),
+    ("conformance.scale.", Block::Buffer { binding: 0 }, 7),
+    ("conformance.visibility-", Block::PushConstants, 8),
+];
+
+#[test]
+fn structs_of_the_suite_are_words_without_gaps() {
+    for (prefix, block, words) in SUITE {
+        let modules = all_modules().into_iter();
+        let own = modules.filter(|(name, _)| name.starts_with(prefix));
+        let mut seen = 0;
+        for (name, bytes) in own {
+            let all = blocks(&bytes);
+            let shape = &all[&block];
+            let members = inner(shape).1.unwrap_or(shape);
+            let mut right: Vec<u32> = (0..words as u32).map(|word| 4 * word).collect();
+            if prefix == "conformance.coordinates.tesc" {
+                // Two arrays, of four levels and of two.
+                right = vec![0, 16];
+            }
+            assert_eq!(members.offsets, right, "{name} {block:?}");
+            seen += 1;
+        }
+        assert!(seen > 1, "{prefix}: shipped and built");
+    }
 }
 
 /// Behind their count, captured vertices begin at once: the host splits the buffer there.

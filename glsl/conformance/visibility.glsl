@@ -1,7 +1,7 @@
 // A control shader fills a slot of memory, the evaluation shader of the same patch reads it: what both forms of it share.
 //
 // Before this is included, the form defines CONTROL_MEMORY and EVALUATION_MEMORY, the qualifiers of the slots' memory in each stage, and
-// MAKE_VISIBLE, what stands between stores or loads and the barrier; and, where that is not plain indexing, STORE and LOAD.
+// MAKE_VISIBLE, what stands between stores or loads and the barrier; and, where these are not plain ones, STORE, LOAD and BARRIER.
 #ifndef VISIBILITY_GLSL
 #define VISIBILITY_GLSL
 
@@ -48,6 +48,9 @@ layout(push_constant, scalar) uniform Draw {
 #endif
 #ifndef LOAD
 #define LOAD(at) words[at]
+#endif
+#ifndef BARRIER
+#define BARRIER barrier()
 #endif
 
 const uint NO_SLOT = 0xffffffffu;

@@ -25,7 +25,7 @@ void main() {
     uint count = slot == NO_SLOT ? 0u : draw.words;
     for (uint i = gl_InvocationID; i < count; i += INVOCATIONS) STORE(slot + i, content(number, i, draw.round));
     MAKE_VISIBLE;
-    barrier();
+    BARRIER;
     MAKE_VISIBLE;
     if (gl_InvocationID == 0) {
         out_patch = number;

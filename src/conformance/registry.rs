@@ -129,6 +129,18 @@ mod tests {
     }
 
     #[test]
+    fn every_workaround_names_cases_that_are_there() {
+        let suite = Registry::suite();
+        for row in crate::gpu::workaround::WORKAROUNDS {
+            let own = suite
+                .cases
+                .iter()
+                .filter(|case| case.name.starts_with(row.case));
+            assert!(own.count() > 10, "{}", row.case);
+        }
+    }
+
+    #[test]
     fn meshes_of_the_user_have_cases_of_their_own() {
         let cases = Registry::of_models(["ship", "car"]).cases;
         assert!(cases.iter().any(|case| case.name.contains("ship")));

@@ -1,11 +1,11 @@
 //! The runner's side: worker processes, time limits, repetitions, and results that are never lost.
 
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::conformance::worker::{Answer, request};
@@ -13,6 +13,9 @@ use crate::conformance::{Case, CaseResult, Expectations, Finding, Report, Status
 
 /// How long a worker may take until it is ready. Loading a driver takes less than a second; a busy machine gets more.
 const START: Duration = Duration::from_secs(60);
+
+/// How long the end of a worker may take whose input is closed.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What is kept of the last that a worker said, in bytes.
 const LAST_WORDS: usize = 4096;
@@ -167,6 +170,7 @@ struct Worker {
     requests: Option<ChildStdin>,
     answers: Receiver<Answer>,
     last_words: Arc<Mutex<Vec<u8>>>,
+    listener: Option<JoinHandle<()>>,
     ready: bool,
 }
 
@@ -200,15 +204,16 @@ impl Worker {
             });
         }
         let last_words = Arc::<Mutex<Vec<u8>>>::default();
-        if let Some(errors) = child.stderr.take() {
+        let listener = child.stderr.take().map(|errors| {
             let kept = last_words.clone();
-            thread::spawn(move || keep_last(errors, &kept));
-        }
+            thread::spawn(move || keep_last(errors, &kept))
+        });
         Ok(Worker {
             requests: child.stdin.take(),
             child,
             answers,
             last_words,
+            listener,
             ready: false,
         })
     }
@@ -243,18 +248,35 @@ impl Worker {
 
     /// How it ended, and the last line that it said.
     fn ended(mut self) -> String {
-        drop(self.requests.take());
-        let ended = self.child.wait();
+        let how = self.reap();
+        // What it said is complete when the pipe is closed, unless a child of its own still holds it.
+        let listener = self.listener.take();
+        within(PATIENCE, || {
+            listener.as_ref().is_none_or(JoinHandle::is_finished)
+        });
         let words = self
             .last_words
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let words = String::from_utf8_lossy(&words).into_owned();
         let last = words.lines().rev().find(|line| !line.trim().is_empty());
-        let how = ended.map_or_else(|error| error.to_string(), |status| in_words(&status));
         match last {
             Some(line) => format!("the process ended: {how}; its last line: {line}"),
             None => format!("the process ended: {how}"),
+        }
+    }
+
+    /// Waits for its end, with its input closed, and helps if it does not come. Says how it ended.
+    fn reap(&mut self) -> String {
+        drop(self.requests.take());
+        within(PATIENCE, || !matches!(self.child.try_wait(), Ok(None)));
+        match self.child.try_wait() {
+            // Display says "exit status: 1" or "signal: 6 (SIGABRT)".
+            Ok(Some(status)) => status.to_string(),
+            _ => {
+                self.kill();
+                "it closed its output and hung".into()
+            }
         }
     }
 
@@ -267,22 +289,16 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        // Between cases the end of its input is the end of the worker; in one it is killed.
-        drop(self.requests.take());
-        let patience = Instant::now() + Duration::from_secs(2);
-        while matches!(self.child.try_wait(), Ok(None)) {
-            if Instant::now() > patience {
-                self.kill();
-                return;
-            }
-            thread::sleep(Duration::from_millis(5));
-        }
+        self.reap();
     }
 }
 
-fn in_words(status: &ExitStatus) -> String {
-    // Display says "exit status: 1" or "signal: 6 (SIGABRT)".
-    status.to_string()
+/// Waits until `there` is, at most for `patience`.
+fn within(patience: Duration, mut there: impl FnMut() -> bool) {
+    let end = Instant::now() + patience;
+    while !there() && Instant::now() < end {
+        thread::sleep(Duration::from_millis(5));
+    }
 }
 
 fn keep_last(mut from: impl Read, kept: &Mutex<Vec<u8>>) {
@@ -370,6 +386,15 @@ mod tests {
             let report = run(&hang, Duration::from_secs(2));
             let [pass, late] = [Status::Pass, Status::Timeout];
             assert_eq!(statuses(&report), [pass, late, pass, pass]);
+        }
+
+        /// It is neither dead nor alive: its output is closed, but it does not end.
+        #[test]
+        fn a_worker_that_closes_its_output_is_a_crash() {
+            let closes = format!("case $name in *bad) exec sleep 60 >&-;; esac; {PASS}");
+            let report = run(&closes, Duration::from_secs(20));
+            let [pass, crash] = [Status::Pass, Status::Crash];
+            assert_eq!(statuses(&report), [pass, crash, pass, pass]);
         }
 
         /// It answers, and dies before the next request: nobody else pays for that.

@@ -48,6 +48,9 @@ struct Constants {
     level: f32,
 }
 
+// As `tests/layout.rs` holds the shaders to.
+const _: () = assert!(size_of::<Note>() == 4 * 7 && size_of::<Constants>() == 4 * 7);
+
 /// The kinds of draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {

@@ -33,6 +33,9 @@ struct Constants {
     level: f32,
 }
 
+// As `tests/layout.rs` holds the shaders to.
+const _: () = assert!(size_of::<Constants>() == 4 * 8);
+
 /// A way to say it: the name of its two shaders.
 #[derive(Clone, Copy, Debug)]
 struct Form {
@@ -44,7 +47,7 @@ const GLSL: &str =
     "GLSL 4.60, sections 4.10 and 8.17; Vulkan, Memory Model, Availability and Visibility";
 const MODEL: &str = "Vulkan, Memory Model; GL_KHR_memory_scope_semantics";
 
-const FORMS: [Form; 8] = [
+const FORMS: [Form; 9] = [
     form("coherent", GLSL),
     form("memory-barrier", GLSL),
     form("volatile", GLSL),
@@ -52,14 +55,19 @@ const FORMS: [Form; 8] = [
     form("restrict", GLSL),
     form("one-way", GLSL),
     form("atomic", GLSL),
-    form(MEMORY_MODEL, MODEL),
+    form("memory-model", MODEL),
+    form("control-barrier", MODEL),
 ];
-
-/// The form that needs a feature.
-const MEMORY_MODEL: &str = "memory-model";
 
 const fn form(name: &'static str, source: &'static str) -> Form {
     Form { name, source }
+}
+
+impl Form {
+    /// Whether it speaks the memory model, which is a feature.
+    fn needs_model(self) -> bool {
+        self.source == MODEL
+    }
 }
 
 /// What the shaders found: `results` in `glsl/conformance/visibility.glsl`.
@@ -84,19 +92,20 @@ struct Bed<'a> {
     pipeline: ash::vk::Pipeline,
 }
 
-/// A device without the memory model cannot run that form.
+/// A device without the memory model cannot run forms that speak it.
 fn lacks(context: &Context, form: Form) -> Result<Option<Finding>> {
     let support = context.device()?.info().support;
-    let lacks = form.name == MEMORY_MODEL && !support.vulkan_memory_model;
+    let lacks = form.needs_model() && !support.vulkan_memory_model;
     Ok(lacks.then(|| Finding::skip("the device has no vulkanMemoryModelDeviceScope")))
 }
 
 impl Bed<'_> {
     fn new(context: &Context, form: Form, invocations: u32, room: u32) -> Result<Bed<'_>> {
         let sizes = [u64::from(4 * room), u64::from(4 * BATCHES), 24];
-        let device = match form.name {
-            MEMORY_MODEL => context.memory_model_device()?,
-            _ => context.device()?,
+        let device = if form.needs_model() {
+            context.memory_model_device()?
+        } else {
+            context.device()?
         };
         let mut raw = Raw::new(device, &sizes, 16)?;
         let control = module(&format!("visibility-{}.tesc", form.name))?;

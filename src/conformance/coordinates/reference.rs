@@ -15,6 +15,9 @@ pub struct TessLevels {
     pub inner: [f32; 2],
 }
 
+// As `tests/layout.rs` holds the shaders to: four levels, then two.
+const _: () = assert!(size_of::<TessLevels>() == 4 * 6);
+
 impl TessLevels {
     /// All the same.
     pub fn uniform(level: f32) -> TessLevels {

@@ -2,6 +2,7 @@
 //! its 1-ring and a plan, whose stencils the control shader runs and whose quadtree the evaluation shader walks.
 
 mod border;
+mod plain;
 mod twin;
 
 use std::time::Instant;
@@ -18,7 +19,8 @@ use crate::method::{Contract, Domain, Method, Pass, Prepared};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 
-use border::{Borders, Irregular, is_turned_corner};
+use border::{Borders, Irregular};
+use plain::is_turned_corner;
 
 /// The row of the table.
 pub const METHOD: Method = Method {

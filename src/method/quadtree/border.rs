@@ -8,9 +8,11 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::abi;
-use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
+use crate::method::quadtree::plain::{
+    edge_rows, is_plain_edge, is_plain_vertex, is_turned_corner, vertex_rows,
+};
 use crate::plan::{
     Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, VertexKind, VertexPlan,
 };
@@ -167,30 +169,6 @@ pub struct Borders {
     pub edge_plans: usize,
     /// How many different plans of vertices there are.
     pub vertex_plans: usize,
-}
-
-/// Whether a vertex is smooth and has four quads around it: it needs no plan.
-pub fn is_plain_vertex(topology: &Topology, vertex: u32) -> bool {
-    let faces = topology.vertex_faces(vertex);
-    faces.len() == 4
-        && topology.vertex_edges(vertex).len() == 4
-        && faces.iter().all(|at| topology.face(at.face).len() == 4)
-        && !is_sharp(topology.vertex_sharpness(vertex))
-        && topology.sharp_edges(vertex).next().is_none()
-}
-
-fn is_plain_edge(topology: &Topology, edge: u32) -> bool {
-    let ends = topology.edge(edge).vertices;
-    ends.iter().all(|&vertex| is_plain_vertex(topology, vertex))
-}
-
-/// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
-/// vertex's edges that have the lowest number.
-pub fn is_turned_corner(topology: &Topology, face: u32, corner: u32) -> bool {
-    let edges = topology.fan(face, corner);
-    let lowest = edges.edges.iter().min().expect("a vertex has edges");
-    let at = |i: usize| &edges.edges[(edges.at + i) % 4];
-    at(1) == lowest || at(3) == lowest
 }
 
 /// A part's edges: which line it is, whether the part has a half of it, and the corner of the face that the line begins with.
@@ -465,42 +443,4 @@ impl Builder<'_> {
             records.len() as u32 - 1
         })
     }
-}
-
-/// The nine vertices around a plain vertex, row by row, in the frame of a corner: u runs to the next vertex and v to the previous one.
-fn block(topology: &Topology, face: u32, corner: u32) -> [[u32; 3]; 3] {
-    let fan = topology.fan(face, corner);
-    let end = |i: usize| topology.edge(fan.edges[(fan.at + i) % 4]).other(fan.vertex);
-    let far = |i: usize| {
-        let vertices = topology.face(fan.faces[(fan.at + i) % 4]);
-        let own = vertices.iter().position(|&vertex| vertex == fan.vertex);
-        vertices[(own.expect("the fan's faces touch its vertex") + 2) % 4]
-    };
-    [
-        [far(2), end(3), far(3)],
-        [end(2), fan.vertex, end(0)],
-        [far(1), end(1), far(0)],
-    ]
-}
-
-/// The vertices around a plain edge, number x + 4 y, u along the face's edge from its corner on. Row 3 has no weight there.
-fn edge_rows(topology: &Topology, face: u32, corner: u32) -> [u32; 16] {
-    let near = block(topology, face, corner);
-    // The other corner's frame is turned by a quarter: its u runs into the face, its v back along the edge.
-    let far = block(topology, face, (corner + 1) % 4);
-    let row = |y: usize| [near[y][0], near[y][1], far[1][y], far[0][y]];
-    [row(0), row(1), row(2), row(1)]
-        .concat()
-        .try_into()
-        .expect("four rows of four")
-}
-
-/// The vertices around a plain vertex, number x + 4 y, in the frame of a corner, or in one turned by a quarter. Column and row 3 have no
-/// weight there.
-fn vertex_rows(topology: &Topology, face: u32, corner: u32, turned: bool) -> [u32; 16] {
-    let block = block(topology, face, corner);
-    std::array::from_fn(|i| {
-        let [x, y] = [i % 4, i / 4].map(|i| if i == 3 { 1 } else { i });
-        if turned { block[x][2 - y] } else { block[y][x] }
-    })
 }

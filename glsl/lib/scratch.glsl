@@ -23,7 +23,7 @@ uint take_slot(uint number, uint points) {
     atomicAdd(counters[COUNTER_POINTS], points);
     bool host = (frame.flags & FRAME_HOST_SLOTS) != 0u;
     uint slot = host ? slots[number] : atomicAdd(counters[frame.counter], points);
-    if (slot + points <= frame.ring_points) return slot;
+    if (points <= frame.ring_points && slot <= frame.ring_points - points) return slot;
     atomicAdd(counters[COUNTER_OVERFLOWS], 1u);
     return NO_SLOT;
 }

@@ -30,9 +30,10 @@ vec3 control_point(Patch record, uint number) {
 #ifdef STAGE_CONTROL
 uint scratch_points(Patch record, uint level) { return borders[record.plan].counts[min(level, HIGHEST_LEVEL)]; }
 
-// A vertex of the patch's 1-ring.
+// A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
-    return place < CONTROL_POINTS ? in_point[place] : control_vertex(controls[record.controls + place]);
+    vec3 piped = in_point[min(place, CONTROL_POINTS - 1u)];
+    return place < CONTROL_POINTS ? piped : control_vertex(controls[record.controls + place]);
 }
 
 // Adds `term` to a sum of many, and keeps what rounding takes away (Kahan 1965).
@@ -88,6 +89,8 @@ void run_stencils(Patch record, uint slot, uint level, uint count) {
         uint start = planned ? end : USES;
         if (gl_InvocationID == number && count > 0u) scratch[slot + number] = vec4(origin, float(start));
         uint points = limit ? 3u : header.counts[min(level + uint(halved), HIGHEST_LEVEL + 1u)];
+        // Bounded by the weights that there are: a plan that is garbage must not keep the device busy for ever.
+        header.ring_size = min(header.ring_size, uint(weights.length()) / max(min(points, count), 1u));
         end += planned ? points : 0u;
         uint pair = limit ? 2u * (flags >> USE_SIDE_SHIFT) : 0u;
         for (; next < min(end, count); next += CONTROL_INVOCATIONS) {

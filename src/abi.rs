@@ -114,10 +114,29 @@ constants! {
     BINDING_SLOTS = 6;
     /// Set 0, binding: the number of captured vertices, then the `Captured` records.
     BINDING_CAPTURE = 7;
+    /// Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
+    BINDING_POINTS = 8;
+    /// Set 0, binding: `PointRow` records, one a point and step.
+    BINDING_POINT_ROWS = 9;
+    /// Set 0, binding: `PointTerm` records.
+    BINDING_POINT_TERMS = 10;
     /// Set 0, binding: the first of a method's own tables.
-    BINDING_TABLES = 8;
+    BINDING_TABLES = 11;
     /// How many tables a method may have of its own.
     TABLES = 5;
+
+    /// Step of points: positions are sums of weighted control vertices.
+    POINTS_BLEND = 0;
+    /// Step of points: the same, and normals are perpendicular to two more such sums, the tangents.
+    POINTS_LIMIT = 1;
+    /// Step of points: normals are those of the ring of faces around each point.
+    POINTS_RING = 2;
+    /// Step of points: normals are sums of weighted normals of other points.
+    POINTS_NORMALS = 3;
+    /// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
+    ROW_OPEN = 0x8000_0000;
+    /// Invocations of a workgroup of the shader that computes points.
+    POINT_INVOCATIONS = 64;
 
     /// Invocations of a control shader that runs stencils; also its greatest number of control points.
     CONTROL_INVOCATIONS = 32;
@@ -197,7 +216,7 @@ constants! {
 }
 
 structs! {
-    /// A patch: a quad, or the part of an n-gon at one of its corners.
+    /// A patch: a triangle, a quad, or the part of an n-gon at one of its corners.
     Patch {
         /// Its ptex face.
         ptex: u32,
@@ -207,7 +226,7 @@ structs! {
         controls: u32,
         /// Its border, or whatever the method keeps for it.
         plan: u32,
-        /// The valences of its four corners, a byte each, 255 for more.
+        /// The valences of its corners, a byte each, 255 for more; triangles have none at corner 3.
         valences: u32,
     }
 
@@ -242,6 +261,47 @@ structs! {
         plain_count: u32,
         /// The points that a patch needs in the ring at level 0..=10.
         counts: [u32; 11],
+    }
+
+    /// A point that is computed from control vertices.
+    Point {
+        /// Position relative to the model's centre.
+        position: [f32; 3],
+        /// Unit normal, or zero.
+        normal: [f32; 3],
+    }
+
+    /// What a point is computed from in a step.
+    PointRow {
+        /// Its first term.
+        first: u32,
+        /// How many terms, and `ROW_OPEN`.
+        count: u32,
+    }
+
+    /// A term of a sum: a control vertex or point, and its weights. Of a ring the first term is the point itself, the others the far ends of
+    /// its edges, counter-clockwise; their weights do not count.
+    PointTerm {
+        /// Control vertex or point.
+        source: u32,
+        /// Weight in the position, or normal.
+        position: f32,
+        /// Weight in the first tangent.
+        du: f32,
+        /// Weight in the second tangent.
+        dv: f32,
+    }
+
+    /// A step of computing points; push constants.
+    PointStep {
+        /// `POINTS_...`
+        kind: u32,
+        /// Its first row.
+        first_row: u32,
+        /// The point that the first row computes; row i computes the ith after it.
+        first_point: u32,
+        /// How many points.
+        count: u32,
     }
 
     /// A node of a quadtree.

@@ -6,26 +6,22 @@
 mod displacement;
 mod flat;
 mod patches;
+mod points;
 mod quadtree;
+mod surface;
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::mesh::Model;
 use crate::plan::PlanOptions;
+use crate::tessellation::Domain;
 
 pub use displacement::Displacement;
+pub use points::Points;
 pub use quadtree::PlanStatistics;
-
-/// The shape of a method's patches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Domain {
-    /// Unit square.
-    Quads,
-    /// Triangle.
-    Triangles,
-}
+pub use surface::{Controls, SurfacePoint};
 
 /// What a method promises.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,8 +45,8 @@ pub struct Method {
     pub summary: &'static str,
     /// Where it is described.
     pub paper: &'static str,
-    /// The shape of its patches.
-    pub domain: Domain,
+    /// The shapes that its patches can have.
+    pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
     /// Prepares a model.
@@ -87,6 +83,8 @@ pub fn method(name: &str) -> Result<&'static Method> {
 pub struct Prepared {
     /// The passes.
     pub passes: Vec<Pass>,
+    /// What is computed from the control vertices before patches are drawn; nothing for most methods.
+    pub points: Points,
     /// What is known about the plans, when the method has any.
     pub plans: Option<PlanStatistics>,
 }
@@ -96,6 +94,8 @@ pub struct Prepared {
 pub struct Pass {
     /// The file in `glsl/method` that evaluates them.
     pub shader: &'static str,
+    /// The shape of all of them.
+    pub domain: Domain,
     /// Control points a patch, 1..=32, that go through the vertex shader.
     pub control_points: u32,
     /// The patches.
@@ -114,49 +114,51 @@ pub struct Pass {
     pub twin: Twin,
 }
 
-/// A point of a patch as the evaluation shader computes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Surface {
-    /// Position relative to the model's centre.
-    pub position: Vec3,
-    /// Derivative by u.
-    pub du: Vec3,
-    /// Derivative by v.
-    pub dv: Vec3,
-}
+/// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices and points, patch, and where in its domain.
+pub type Twin = fn(&Pass, &Controls, usize, Vec2) -> SurfacePoint;
 
-impl Surface {
-    /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel. No zero is negative.
-    pub fn normal(&self) -> Vec3 {
-        normalized(normalized(self.du).cross(normalized(self.dv))) + Vec3::ZERO
+impl Prepared {
+    /// Control vertices, relative to the model's centre, with the points that are computed from them: what [`Pass::evaluate`] needs.
+    pub fn controls(&self, vertices: Vec<glam::Vec3>) -> Controls {
+        Controls {
+            points: self.points.compute(&vertices),
+            vertices,
+        }
     }
 }
-
-/// Unit length, or zero where there is no direction. Scaled first, so that no square leaves the range of floats.
-fn normalized(v: Vec3) -> Vec3 {
-    let greatest = v.abs().max_element();
-    if greatest == 0.0 {
-        Vec3::ZERO
-    } else {
-        (v / greatest).normalize()
-    }
-}
-
-/// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices, patch, and where in its domain.
-pub type Twin = fn(&Pass, &[Vec3], usize, Vec2) -> Surface;
 
 impl Pass {
+    /// A pass without patches.
+    fn new(shader: &'static str, domain: Domain, control_points: u32, twin: Twin) -> Pass {
+        Pass {
+            shader,
+            domain,
+            control_points,
+            patches: Vec::new(),
+            controls: Vec::new(),
+            texture: Vec::new(),
+            tables: Vec::new(),
+            scratch_points: Vec::new(),
+            max_level: abi::HIGHEST_LEVEL,
+            twin,
+        }
+    }
+
     /// Evaluates patch `patch` at `uv` of its own domain.
-    pub fn evaluate(&self, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
-        (self.twin)(self, positions, patch, uv)
+    pub fn evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+        (self.twin)(self, controls, patch, uv)
     }
 
     /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in
-    /// `glsl/surface.tese`.
+    /// `glsl/lib/vertex.glsl`.
     pub fn texture_coordinates(&self, patch: usize, uv: [f32; 2]) -> [f32; 2] {
         let [a, b, c, d] = self.texture[patch].map(Vec2::from);
-        let (bottom, top) = (a.lerp(b, uv[0]), d.lerp(c, uv[0]));
-        bottom.lerp(top, uv[1]).to_array()
+        let [u, v] = uv;
+        match self.domain {
+            Domain::Quads => a.lerp(b, u).lerp(d.lerp(c, u), v),
+            Domain::Triangles => (1.0 - u - v) * a + u * b + v * c,
+        }
+        .to_array()
     }
 
     /// The points that patch `patch` needs in the ring at `level`.

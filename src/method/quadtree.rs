@@ -15,8 +15,9 @@ use crate::error::Result;
 use crate::mesh::Model;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Domain, Method, Pass, Prepared};
+use crate::method::{Contract, Method, Pass, Prepared};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
+use crate::tessellation::Domain;
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 
 use border::{Borders, Irregular};
@@ -27,7 +28,7 @@ pub const METHOD: Method = Method {
     name: "quadtree",
     summary: "the exact Catmull-Clark limit, by adaptive quadtrees",
     paper: "Brainerd, Foley, Kraemer, Moreton, Nießner 2016",
-    domain: Domain::Quads,
+    domains: &[Domain::Quads],
     contract: Contract {
         limit: Some(1e-6),
         normals: Some(0.1),
@@ -155,6 +156,7 @@ fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
     Ok(Prepared {
         passes,
         plans: Some(plans),
+        ..Prepared::default()
     })
 }
 
@@ -186,15 +188,8 @@ fn pass(
     options: PlanOptions,
 ) -> Pass {
     Pass {
-        shader,
-        control_points,
-        patches: Vec::new(),
-        controls: Vec::new(),
-        texture: Vec::new(),
-        tables: Vec::new(),
-        scratch_points: Vec::new(),
         max_level: options.max_level,
-        twin,
+        ..Pass::new(shader, Domain::Quads, control_points, twin)
     }
 }
 

@@ -45,12 +45,33 @@ impl Spacing {
     }
 }
 
+/// The shape of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Domain {
+    /// The unit square.
+    Quads,
+    /// The triangle u, v >= 0, u + v <= 1. Corner 0 is (0, 0), 1 is (1, 0), 2 is (0, 1).
+    Triangles,
+}
+
+impl Domain {
+    /// How many corners, and edges.
+    pub fn corners(self) -> usize {
+        match self {
+            Domain::Quads => 4,
+            Domain::Triangles => 3,
+        }
+    }
+}
+
 /// Tess levels of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// Of the edges from corner i to corner i + 1.
+    /// Its shape.
+    pub domain: Domain,
+    /// Of the edges from corner i to corner i + 1; triangles repeat that of edge 2.
     pub edges: [f32; 4],
-    /// Of the inside, in both directions.
+    /// Of the inside, in all directions.
     pub inside: f32,
 }
 
@@ -58,7 +79,13 @@ pub struct Levels {
 ///
 /// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
 /// fractional-even (Brainerd et al. 2016, section 7.2).
-pub fn levels(patch: &abi::Patch, level: f32, spacing: Spacing, max_level: u32) -> Levels {
+pub fn levels(
+    domain: Domain,
+    patch: &abi::Patch,
+    level: f32,
+    spacing: Spacing,
+    max_level: u32,
+) -> Levels {
     let level = spacing.clamp(level, max_level);
     let half = match spacing {
         Spacing::Equal => (level * 0.5).ceil(),
@@ -66,12 +93,14 @@ pub fn levels(patch: &abi::Patch, level: f32, spacing: Spacing, max_level: u32) 
     };
     if patch.flags & abi::PATCH_HALF != 0 {
         return Levels {
+            domain,
             edges: [half; 4],
             inside: half,
         };
     }
     let even = |edge: u32| patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
     Levels {
+        domain,
         edges: [0, 1, 2, 3].map(|edge| if even(edge) { 2.0 * half } else { level }),
         inside: level,
     }
@@ -83,30 +112,40 @@ impl Levels {
         self.edges.iter().copied().fold(self.inside, f32::max)
     }
 
-    /// The vertices that the tessellator makes of a patch (Vulkan spec, "Quad Tessellation").
+    /// The vertices that the tessellator makes of a patch (Vulkan spec, "Quad Tessellation", "Triangle Tessellation").
     pub fn vertices(&self, spacing: Spacing) -> u32 {
-        let outer = self.edges.map(|level| spacing.segments(level));
         let inside = self.inside_segments(spacing);
-        if inside == 1 {
-            4
-        } else {
-            outer.iter().sum::<u32>() + (inside - 1) * (inside - 1)
+        match self.domain {
+            _ if inside == 1 => self.domain.corners() as u32,
+            Domain::Quads => self.outer(spacing) + (inside - 1) * (inside - 1),
+            Domain::Triangles => {
+                self.outer(spacing) + inner_rings(inside).map(ring_vertices).sum::<u32>()
+            }
         }
     }
 
     /// The triangles that the tessellator makes of a patch.
     pub fn triangles(&self, spacing: Spacing) -> u32 {
-        let outer: u32 = self
-            .edges
-            .iter()
-            .map(|&level| spacing.segments(level))
-            .sum();
         let inside = self.inside_segments(spacing);
-        if inside == 1 {
-            2
-        } else {
-            outer + 4 * (inside - 2) + 2 * (inside - 2) * (inside - 2)
+        match self.domain {
+            Domain::Quads if inside == 1 => 2,
+            Domain::Quads => {
+                self.outer(spacing) + 4 * (inside - 2) + 2 * (inside - 2) * (inside - 2)
+            }
+            Domain::Triangles if inside == 1 => 1,
+            // Between two rings there are as many triangles as both have segments; the innermost ring may itself be a triangle.
+            Domain::Triangles => {
+                let segments: u32 = inner_rings(inside).map(|ring| 3 * ring).sum();
+                let innermost = if inside % 2 == 1 { 3 - 1 } else { 0 };
+                self.outer(spacing) + 2 * segments - innermost
+            }
         }
+    }
+
+    /// The segments of all edges.
+    fn outer(&self, spacing: Spacing) -> u32 {
+        let edges = &self.edges[..self.domain.corners()];
+        edges.iter().map(|&level| spacing.segments(level)).sum()
     }
 
     /// An inside level of 1 counts as just over 1 unless all levels are 1.
@@ -118,6 +157,17 @@ impl Levels {
             inside
         }
     }
+}
+
+/// The segments on a side of each triangle within a triangle whose inside level makes `segments`, from the outside; the last may be 0, a
+/// point.
+pub(crate) fn inner_rings(segments: u32) -> impl Iterator<Item = u32> {
+    (1..=segments / 2).map(move |ring| segments - 2 * ring)
+}
+
+/// The vertices of a ring with so many segments a side.
+pub(crate) fn ring_vertices(segments: u32) -> u32 {
+    (3 * segments).max(1)
 }
 
 /// The plan level that tess levels need: ceil(log2 of the greatest), at most `max_level`.
@@ -151,8 +201,20 @@ mod tests {
             .flat_map(|l| SPACINGS.map(|s| (l, s)))
             .flat_map(|(l, s)| [1, 2, 4, 6].map(|m| (l, s, m)))
         {
-            let quad = levels(&patch(abi::PATCH_EVEN_EDGE << 2), level, spacing, max_level);
-            let half = levels(&patch(abi::PATCH_HALF), level, spacing, max_level);
+            let quad = levels(
+                Domain::Quads,
+                &patch(abi::PATCH_EVEN_EDGE << 2),
+                level,
+                spacing,
+                max_level,
+            );
+            let half = levels(
+                Domain::Quads,
+                &patch(abi::PATCH_HALF),
+                level,
+                spacing,
+                max_level,
+            );
             let place = format!("{level}, {spacing:?}, {max_level}");
             // Quads agree by the same number, n-gons' inner edges too.
             assert_eq!(quad.edges[0], quad.inside, "{place}");
@@ -170,8 +232,14 @@ mod tests {
     #[test]
     fn edges_beside_n_gons_have_equal_steps() {
         for (level, spacing) in all_levels().flat_map(|l| SPACINGS.map(|s| (l, s))) {
-            let quad = levels(&patch(abi::PATCH_EVEN_EDGE), level, spacing, 6);
-            let half = levels(&patch(abi::PATCH_HALF), level, spacing, 6);
+            let quad = levels(
+                Domain::Quads,
+                &patch(abi::PATCH_EVEN_EDGE),
+                level,
+                spacing,
+                6,
+            );
+            let half = levels(Domain::Quads, &patch(abi::PATCH_HALF), level, spacing, 6);
             for level in [quad.edges[0], half.edges[0]] {
                 assert_eq!(
                     level,
@@ -182,10 +250,34 @@ mod tests {
         }
     }
 
+    /// By Euler's formula: vertices - edges + triangles = 1, and 2 edges = 3 triangles + rim.
+    #[test]
+    fn vertices_and_triangles_belong_together() {
+        for (level, spacing) in all_levels().flat_map(|l| SPACINGS.map(|s| (l, s))) {
+            for domain in [Domain::Quads, Domain::Triangles] {
+                for edge in [1.0, level, 5.0] {
+                    let levels = Levels {
+                        domain,
+                        edges: [edge, level, level, level],
+                        inside: level,
+                    };
+                    let (vertices, triangles) =
+                        (levels.vertices(spacing), levels.triangles(spacing));
+                    assert_eq!(
+                        2 * vertices,
+                        triangles + levels.outer(spacing) + 2,
+                        "{levels:?} {spacing:?}"
+                    );
+                }
+            }
+        }
+    }
+
     #[test]
     fn levels_stay_within_what_the_plan_is_made_for() {
         for (level, max_level) in all_levels().flat_map(|l| (1..=6).map(move |m| (l, m))) {
             let quad = levels(
+                Domain::Quads,
                 &patch(abi::PATCH_EVEN_EDGE),
                 level,
                 Spacing::Equal,

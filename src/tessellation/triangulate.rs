@@ -1,14 +1,23 @@
 //! Triangles from the vertices that the tessellator made of a patch.
 //!
 //! Vulkan fixes where the vertices lie but not how they are joined between the outer edges and the inside. This joins them by walking both
-//! sides of that gap together. The inside is a full grid.
+//! sides of that gap together. Inside, quads are a full grid, triangles are rings within one another.
 
 use std::cmp::Ordering;
 
-/// The triangles of a quad patch, counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order.
+use crate::tessellation::{Domain, rings};
+
+/// The triangles of a patch, counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order.
 ///
-/// The outer edges may have different numbers of vertices; those inside must form a grid.
-pub fn triangulate(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+/// The outer edges may have different numbers of vertices; those inside must be as the tessellator makes them.
+pub fn triangulate(domain: Domain, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+    match domain {
+        Domain::Quads => quad(uv),
+        Domain::Triangles => rings::triangle(uv),
+    }
+}
+
+fn quad(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
     let is_edge = |x: f32| x == 0.0 || x == 1.0;
     let inside: Vec<u32> = numbers(uv, |[u, v]| !is_edge(u) && !is_edge(v));
     let rows = rows(uv, inside);
@@ -16,11 +25,11 @@ pub fn triangulate(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
     for side in 0..4 {
         let outer = numbers(uv, |at| turned(at, side)[1] == 0.0);
         let inner = inner_side(&rows, side);
+        let along = |vertex: u32| turned(uv[vertex as usize], side)[0];
         stitch(
-            uv,
-            side,
-            sorted(uv, outer, side),
-            sorted(uv, inner, side),
+            along,
+            &sorted(uv, outer, side),
+            &sorted(uv, inner, side),
             &mut triangles,
         );
     }
@@ -64,7 +73,7 @@ fn sorted(uv: &[[f32; 2]], mut vertices: Vec<u32>, side: usize) -> Vec<u32> {
     vertices
 }
 
-fn order(a: f32, b: f32) -> Ordering {
+pub(super) fn order(a: f32, b: f32) -> Ordering {
     a.partial_cmp(&b).expect("tess coordinates are numbers")
 }
 
@@ -103,17 +112,15 @@ fn inner_side(rows: &[Vec<u32>], side: usize) -> Vec<u32> {
 }
 
 /// Fills the gap between a side and the inside, always advancing where the next vertex is nearer.
-fn stitch(
-    uv: &[[f32; 2]],
-    side: usize,
-    outer: Vec<u32>,
-    inner: Vec<u32>,
+pub(super) fn stitch(
+    along: impl Fn(u32) -> f32,
+    outer: &[u32],
+    inner: &[u32],
     triangles: &mut Vec<[u32; 3]>,
 ) {
     if inner.is_empty() {
         return;
     }
-    let along = |vertex: u32| turned(uv[vertex as usize], side)[0];
     let (mut i, mut j) = (0, 0);
     while i + 1 < outer.len() || j + 1 < inner.len() {
         let next_outer = outer
@@ -163,7 +170,10 @@ mod tests {
                 let [a, b, c] = [a, b, c].map(|i| glam::Vec2::from(uv[i as usize]).as_dvec2());
                 0.5 * (b - a).perp_dot(c - a)
             };
-            let areas: Vec<f64> = triangulate(&uv).into_iter().map(area).collect();
+            let areas: Vec<f64> = triangulate(Domain::Quads, &uv)
+                .into_iter()
+                .map(area)
+                .collect();
             assert!(areas.iter().all(|&area| area > 0.0), "{edges:?} {inside}");
             assert!(
                 (areas.iter().sum::<f64>() - 1.0).abs() < 1e-6,

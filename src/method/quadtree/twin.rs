@@ -6,7 +6,8 @@
 use glam::{Vec2, Vec3};
 
 use crate::abi;
-use crate::method::{Pass, Surface};
+use crate::method::surface::{Controls, Surface, SurfacePoint};
+use crate::method::Pass;
 use crate::patch::bspline::{Basis, basis, basis_of};
 use crate::patch::crease::crease_basis;
 use crate::plan::{Leaf, Plans, walk};
@@ -78,12 +79,12 @@ fn bspline(
 }
 
 /// A plain B-spline patch. On edges the sums go along the edge first, at corners along the direction that the vertex prefers.
-pub fn regular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
+pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let abi::Patch {
         controls, flags, ..
     } = pass.patches[patch];
     let controls = &pass.controls[controls as usize..];
-    let point = |x: usize, y: usize| positions[controls[x + 4 * y] as usize];
+    let point = |x: usize, y: usize| given.vertices[controls[x + 4 * y] as usize];
     let place = place(flags, uv);
     let turned = match place {
         Place::Inside => false,
@@ -95,19 +96,20 @@ pub fn regular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surfa
         basis_of(t, s)
     });
     if !turned {
-        return bspline(u, v, 1.0, point);
+        return bspline(u, v, 1.0, point).point();
     }
     let Surface { position, du, dv } = bspline(v, u, 1.0, |x, y| point(y, x));
-    Surface {
+    let surface = Surface {
         position,
         du: dv,
         dv: du,
-    }
+    };
+    surface.point()
 }
 
 /// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first
 /// vertex: tangents deep in the tree are differences of small numbers then, instead of small differences of large ones.
-pub fn irregular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
+pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let plans = plans(pass);
     let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[4]);
     let abi::Patch {
@@ -133,7 +135,7 @@ pub fn irregular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Sur
         number: number as usize,
     };
     let flags = border.flags[number as usize];
-    let ring = one_use.ring(positions);
+    let ring = one_use.ring(&given.vertices);
     let origin = match border.plans[number as usize] {
         abi::NO_PLAN => Vec3::ZERO,
         _ => ring[0],
@@ -154,11 +156,12 @@ pub fn irregular(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Sur
     // Half of the edge is the whole patch.
     let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
     let scale = if half { 0.5 } else { 1.0 };
-    Surface {
+    let surface = Surface {
         position: position + origin,
         du: scale * du,
         dv: scale * dv,
-    }
+    };
+    surface.point()
 }
 
 /// From along a patch's edge to along the whole edge in its own direction.

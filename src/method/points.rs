@@ -1,0 +1,227 @@
+//! Points that are computed from the control vertices before patches are drawn: limits, vertices of the next level, vertex normals.
+//!
+//! Each point has rows: lists of weighted vertices, made once a topology. A mesh that moves only applies them again, here with all cores, or
+//! in `glsl/points.comp`, of which this is the twin. Both give the same bits: sums run in the order of the terms, and unit vectors are made
+//! by additions and multiplications alone, which Vulkan wants correctly rounded (Vulkan spec, "Precision of Individual Operations"), where
+//! square roots are not.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
+use crate::subdivision::Mask;
+
+/// How points are computed, step by step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// How many points there are.
+    pub count: u32,
+    /// The steps, each after the one before.
+    pub steps: Vec<PointStep>,
+    /// A row a point of each step.
+    pub rows: Vec<PointRow>,
+    /// What the rows consist of.
+    pub terms: Vec<PointTerm>,
+}
+
+/// What a point becomes in a step. Masks of a limit may name different vertices.
+#[derive(Clone, Copy, Debug)]
+pub enum Row<'a> {
+    /// Position from control vertices.
+    Blend(&'a Mask),
+    /// Position and tangents from control vertices.
+    Limit([&'a Mask; 3]),
+    /// Normal of the faces between the `ends` around a point, counter-clockwise.
+    Ring {
+        /// The point in the middle.
+        middle: u32,
+        /// The far ends of its edges.
+        ends: &'a [u32],
+        /// Whether there is no face between the last and the first.
+        open: bool,
+    },
+    /// Normal from those of other points.
+    Normals(&'a Mask),
+}
+
+impl Points {
+    /// Begins a step whose rows compute the points from `first_point` on.
+    pub fn begin(&mut self, kind: u32, first_point: u32) {
+        self.steps.push(PointStep {
+            kind,
+            first_row: self.rows.len() as u32,
+            first_point,
+            count: 0,
+        });
+    }
+
+    /// Adds the next row to the last step.
+    pub fn push(&mut self, row: Row<'_>) {
+        let first = self.terms.len() as u32;
+        let mut flags = 0;
+        match row {
+            Row::Blend(mask) | Row::Normals(mask) => self.terms.extend(mask.iter().map(|&(v, w)| term(v, w, 0.0, 0.0))),
+            Row::Limit(masks) => self.terms.extend(joined(masks)),
+            Row::Ring { middle, ends, open } => {
+                let all = std::iter::once(&middle).chain(ends);
+                self.terms.extend(all.map(|&vertex| term(vertex, 0.0, 0.0, 0.0)));
+                flags = if open { abi::ROW_OPEN } else { 0 };
+            }
+        }
+        let count = self.terms.len() as u32 - first;
+        self.rows.push(PointRow {
+            first,
+            count: count | flags,
+        });
+        let step = self.steps.last_mut().expect("a step was begun");
+        step.count += 1;
+        self.count = self.count.max(step.first_point + step.count);
+    }
+
+    /// The points of control vertices.
+    pub fn compute(&self, vertices: &[Vec3]) -> Vec<Point> {
+        let mut points = vec![Point::default(); self.count as usize];
+        for step in &self.steps {
+            let computed: Vec<Point> = (0..step.count)
+                .into_par_iter()
+                .map(|i| {
+                    let row = self.rows[(step.first_row + i) as usize];
+                    let before = points[(step.first_point + i) as usize];
+                    self.row(step.kind, row, vertices, &points, before)
+                })
+                .collect();
+            let first = step.first_point as usize;
+            points[first..first + computed.len()].copy_from_slice(&computed);
+        }
+        points
+    }
+
+    fn row(
+        &self,
+        kind: u32,
+        row: PointRow,
+        vertices: &[Vec3],
+        points: &[Point],
+        before: Point,
+    ) -> Point {
+        let count = (row.count & !abi::ROW_OPEN) as usize;
+        let terms = &self.terms[row.first as usize..][..count];
+        let vertex = |term: &PointTerm| vertices[term.source as usize];
+        let sum = |weight: fn(&PointTerm) -> f32| {
+            terms.iter().fold(Vec3::ZERO, |sum, term| sum + weight(term) * vertex(term))
+        };
+        let position = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
+        match kind {
+            abi::POINTS_BLEND => Point {
+                position: sum(|term| term.position).to_array(),
+                ..before
+            },
+            abi::POINTS_LIMIT => {
+                let (du, dv) = (sum(|term| term.du), sum(|term| term.dv));
+                let normal = unit(unit(du).cross(unit(dv)));
+                Point {
+                    position: sum(|term| term.position).to_array(),
+                    normal: normal.to_array(),
+                }
+            }
+            abi::POINTS_RING => {
+                let middle = position(&terms[0]);
+                let spokes: Vec<Vec3> = terms[1..].iter().map(|term| position(term) - middle).collect();
+                let faces = spokes.len() - usize::from(row.count & abi::ROW_OPEN != 0);
+                let normal = (0..faces).fold(Vec3::ZERO, |sum, i| {
+                    sum + spokes[i].cross(spokes[(i + 1) % spokes.len()])
+                });
+                Point {
+                    normal: unit(normal).to_array(),
+                    ..before
+                }
+            }
+            _ => {
+                let normal = terms.iter().fold(Vec3::ZERO, |sum, term| {
+                    sum + term.position * Vec3::from(points[term.source as usize].normal)
+                });
+                Point {
+                    normal: unit(normal).to_array(),
+                    ..before
+                }
+            }
+        }
+    }
+}
+
+fn term(source: u32, position: f64, du: f64, dv: f64) -> PointTerm {
+    PointTerm {
+        source,
+        position: position as f32,
+        du: du as f32,
+        dv: dv as f32,
+    }
+}
+
+/// The terms of three masks, each vertex once.
+fn joined(masks: [&Mask; 3]) -> Vec<PointTerm> {
+    let mut vertices: Vec<u32> = masks.iter().flat_map(|mask| mask.iter().map(|&(v, _)| v)).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let weight = |mask: &Mask, vertex: u32| -> f64 {
+        mask.iter().filter(|&&(v, _)| v == vertex).map(|&(_, w)| w).sum()
+    };
+    let [position, du, dv] = masks;
+    vertices
+        .into_iter()
+        .map(|v| term(v, weight(position, v), weight(du, v), weight(dv, v)))
+        .collect()
+}
+
+/// Unit length, or zero where there is no direction, by additions and multiplications alone. Twin of `unit` in `glsl/lib/unit.glsl`.
+pub(super) fn unit(v: Vec3) -> Vec3 {
+    // The power of two in the greatest element, and what brings it to 1..2; both are exact.
+    let exponent = v.abs().max_element().to_bits() & 0x7f80_0000;
+    if exponent == 0 || exponent >= 254 << 23 {
+        return Vec3::ZERO;
+    }
+    let scaled = v * f32::from_bits((254 << 23) - exponent);
+    let square = scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z;
+    // Newton's method for 1 / sqrt, which doubles the digits in each step; the first guess has four bits.
+    let mut inverse = f32::from_bits(0x5f37_59df - (square.to_bits() >> 1));
+    for _ in 0..4 {
+        inverse *= 1.5 - (0.5 * square) * (inverse * inverse);
+    }
+    scaled * inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_have_unit_length() {
+        for scale in [1e-30, 1e-3, 1.0, 7e5, 1e30] {
+            for v in [Vec3::X, Vec3::new(1.0, -2.0, 3.0), Vec3::new(-1e-6, 1.0, 1.9)] {
+                let unit = unit(scale * v).as_dvec3();
+                assert!((unit.length() - 1.0).abs() < 3e-7, "{scale} {v}: {}", unit.length());
+                assert!(unit.distance(v.as_dvec3().normalize()) < 3e-7);
+            }
+        }
+        assert_eq!(unit(Vec3::ZERO), Vec3::ZERO);
+    }
+
+    #[test]
+    fn rings_have_the_normal_of_their_plane() {
+        let corners = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+        let mut vertices = vec![Vec3::new(0.0, 0.0, 5.0)];
+        vertices.extend(corners.map(|[x, y]| Vec3::new(x, y, 5.0)));
+        for (ends, open) in [(&[1, 2, 3, 4][..], false), (&[1, 2, 3], true), (&[2, 3], true)] {
+            let mut points = Points::default();
+            points.begin(abi::POINTS_BLEND, 0);
+            for vertex in 0..5 {
+                points.push(Row::Blend(&Mask::from_slice(&[(vertex, 1.0)])));
+            }
+            points.begin(abi::POINTS_RING, 0);
+            points.push(Row::Ring { middle: 0, ends, open });
+            let computed = points.compute(&vertices);
+            assert_eq!(computed[0].position, [0.0, 0.0, 5.0]);
+            assert!(Vec3::from(computed[0].normal).distance(Vec3::Z) < 3e-7);
+        }
+    }
+}

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => builtin(DEFAULT_BUILTIN)?,
     };
     let model = Model::new(mesh);
-    let prepared = (method("quadtree")?.prepare)(&model, PlanOptions::default())?;
+    let prepared = method("quadtree")?.prepare(&model, PlanOptions::default())?;
 
     // 2. The device. `Support` tells whether a physical device will do and why not; `FeatureChain` switches on what is needed. An engine with
     //    feature structs of its own calls `Support::require` on them instead. Workarounds for driver faults are a list that is handed over

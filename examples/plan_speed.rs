@@ -71,7 +71,7 @@ fn measure(mesh: &ControlMesh) -> Result<Fastest, Box<dyn Error>> {
         let model = Model::new(mesh);
         fastest.topology = fastest.topology.min(started.elapsed().as_secs_f64());
         let started = Instant::now();
-        let prepared = (quadtree.prepare)(&model, PlanOptions::default())?;
+        let prepared = quadtree.prepare(&model, PlanOptions::default())?;
         fastest.plans = fastest.plans.min(started.elapsed().as_secs_f64());
         fastest.count = prepared.plans.map_or(0, |statistics| statistics.plans);
     }

@@ -18,10 +18,28 @@ const uint BINDING_COUNTERS = 5u;
 const uint BINDING_SLOTS = 6u;
 // Set 0, binding: the number of captured vertices, then the `Captured` records.
 const uint BINDING_CAPTURE = 7u;
+// Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
+const uint BINDING_POINTS = 8u;
+// Set 0, binding: `PointRow` records, one a point and step.
+const uint BINDING_POINT_ROWS = 9u;
+// Set 0, binding: `PointTerm` records.
+const uint BINDING_POINT_TERMS = 10u;
 // Set 0, binding: the first of a method's own tables.
-const uint BINDING_TABLES = 8u;
+const uint BINDING_TABLES = 11u;
 // How many tables a method may have of its own.
 const uint TABLES = 5u;
+// Step of points: positions are sums of weighted control vertices.
+const uint POINTS_BLEND = 0u;
+// Step of points: the same, and normals are perpendicular to two more such sums, the tangents.
+const uint POINTS_LIMIT = 1u;
+// Step of points: normals are those of the ring of faces around each point.
+const uint POINTS_RING = 2u;
+// Step of points: normals are sums of weighted normals of other points.
+const uint POINTS_NORMALS = 3u;
+// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
+const uint ROW_OPEN = 2147483648u;
+// Invocations of a workgroup of the shader that computes points.
+const uint POINT_INVOCATIONS = 64u;
 // Invocations of a control shader that runs stencils; also its greatest number of control points.
 const uint CONTROL_INVOCATIONS = 32u;
 // The deepest level of a plan.
@@ -93,7 +111,7 @@ const uint SHADING_VALENCE = 4u;
 // Shading: one dark colour, for lines.
 const uint SHADING_LINES = 5u;
 
-// A patch: a quad, or the part of an n-gon at one of its corners.
+// A patch: a triangle, a quad, or the part of an n-gon at one of its corners.
 struct Patch {
     // Its ptex face.
     uint ptex;
@@ -103,7 +121,7 @@ struct Patch {
     uint controls;
     // Its border, or whatever the method keeps for it.
     uint plan;
-    // The valences of its four corners, a byte each, 255 for more.
+    // The valences of its corners, a byte each, 255 for more; triangles have none at corner 3.
     uint valences;
 };
 
@@ -138,6 +156,47 @@ struct Border {
     uint plain_count;
     // The points that a patch needs in the ring at level 0..=10.
     uint counts[11];
+};
+
+// A point that is computed from control vertices.
+struct Point {
+    // Position relative to the model's centre.
+    vec3 position;
+    // Unit normal, or zero.
+    vec3 normal;
+};
+
+// What a point is computed from in a step.
+struct PointRow {
+    // Its first term.
+    uint first;
+    // How many terms, and `ROW_OPEN`.
+    uint count;
+};
+
+// A term of a sum: a control vertex or point, and its weights. Of a ring the first term is the point itself, the others the far ends of
+// its edges, counter-clockwise; their weights do not count.
+struct PointTerm {
+    // Control vertex or point.
+    uint source;
+    // Weight in the position, or normal.
+    float position;
+    // Weight in the first tangent.
+    float du;
+    // Weight in the second tangent.
+    float dv;
+};
+
+// A step of computing points; push constants.
+struct PointStep {
+    // `POINTS_...`
+    uint kind;
+    // Its first row.
+    uint first_row;
+    // The point that the first row computes; row i computes the ith after it.
+    uint first_point;
+    // How many points.
+    uint count;
 };
 
 // A node of a quadtree.

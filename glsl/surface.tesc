@@ -35,17 +35,25 @@ void main() {
     barrier();
     memoryBarrierBuffer();
 #else
-    out_point[gl_InvocationID] = in_point[gl_InvocationID];
+    out_point[gl_InvocationID] = patch_point(record, gl_InvocationID);
 #endif
     if (gl_InvocationID == 0) {
         out_patch = number;
         // Outer level 0 discards a patch (Vulkan spec, "Tessellator Patch Discard").
         vec4 edges = drawn ? levels.edges : vec4(0.0);
+#ifdef TRIANGLES
+        // Level i belongs to the edge opposite to corner i (Vulkan spec, "Triangle Tessellation").
+        gl_TessLevelOuter[0] = edges[1];
+        gl_TessLevelOuter[1] = edges[2];
+        gl_TessLevelOuter[2] = edges[0];
+        gl_TessLevelInner[0] = levels.inside;
+#else
         gl_TessLevelOuter[0] = edges[3];
         gl_TessLevelOuter[1] = edges[0];
         gl_TessLevelOuter[2] = edges[1];
         gl_TessLevelOuter[3] = edges[2];
         gl_TessLevelInner[0] = levels.inside;
         gl_TessLevelInner[1] = levels.inside;
+#endif
     }
 }

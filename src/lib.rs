@@ -44,7 +44,7 @@
 //!
 //! // What the GPU would get, by the quadtree method: here one pass of six patches and their plans.
 //! let model = Model::new(mesh);
-//! let prepared = (method("quadtree")?.prepare)(&model, PlanOptions::default())?;
+//! let prepared = method("quadtree")?.prepare(&model, PlanOptions::default())?;
 //! let pass = &prepared.passes[0];
 //! assert_eq!(pass.patches.len(), 6);
 //!

@@ -1,4 +1,4 @@
-// The control points of a patch as the evaluation shader gets them, when the method hands them on instead of using the scratch ring.
+// The control points of a patch as they are evaluated, when the method hands them on instead of using the scratch ring.
 #ifndef CONTROL_POINTS_GLSL
 #define CONTROL_POINTS_GLSL
 

@@ -36,9 +36,20 @@ uint required_level(Levels levels) {
 // Vertex i of n on an edge, in steps of 2^-16; the steps from the other end are the same.
 float step_of(uint i, uint n) { return float((i * 65536u + n / 2u) / n) / 65536.0; }
 
+#ifdef TRIANGLES
+// (u, v) of a triangle's point, from its barycentric coordinates: corner 0 is (0, 0), 1 is (1, 0), 2 is (0, 1). On edges they are whole steps
+// of 2^-16, as tessellators count: so 1 - t is exact, and both sides of an edge have the same pair.
+vec2 shared_coordinates(Patch record, Levels levels, vec3 barycentric) {
+    vec2 uv = barycentric.yz;
+    if (min(barycentric.x, min(uv.x, uv.y)) > 0.0) return uv;
+    uv = round(uv * 65536.0) / 65536.0;
+    return barycentric.x <= 0.0 ? vec2(uv.x, 1.0 - uv.x) : uv;
+}
+#else
 // Of an edge beside an n-gon both sides must have the same coordinates, but what the tessellator makes of a quad's 1/6 may differ from half
 // of what it makes of an n-gon's 1/3. Both count vertices, and take an edge's halves from `step_of`.
-vec2 shared_coordinates(Patch record, Levels levels, vec2 uv) {
+vec2 shared_coordinates(Patch record, Levels levels, vec3 coordinates) {
+    vec2 uv = coordinates.xy;
     bvec2 on = bvec2(uv.x <= 0.0 || uv.x >= 1.0, uv.y <= 0.0 || uv.y >= 1.0);
     uint edge = on.y ? (uv.y <= 0.0 ? 0u : 2u) : (uv.x <= 0.0 ? 3u : 1u);
     bool part = (record.flags & PATCH_HALF) != 0u;
@@ -53,5 +64,6 @@ vec2 shared_coordinates(Patch record, Levels levels, vec2 uv) {
     if (!part) t = second ? 0.5 + 0.5 * t : 0.5 * t;
     return on.y ? vec2(t, uv.y) : vec2(uv.x, t);
 }
+#endif
 
 #endif

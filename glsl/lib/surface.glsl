@@ -1,7 +1,10 @@
-// A point of a surface. Twin of `method::Surface`.
+// A point of a surface. Twin of `method/surface.rs`.
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
 
+#include "abi.glsl"
+
+// A point with its tangents.
 struct Surface {
     vec3 position;
     vec3 du;
@@ -27,5 +30,8 @@ vec3 surface_normal(Surface surface) {
     vec3 unit = normalize_or_zero(normal);
     return mix(unit, vec3(0.0), equal(unit, vec3(0.0)));
 }
+
+// The point with the normal that its tangents give.
+Point surface_point(Surface surface) { return Point(surface.position, surface_normal(surface)); }
 
 #endif

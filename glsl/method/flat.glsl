@@ -22,15 +22,21 @@ vec3 control_point(Patch record, uint number) {
 }
 #endif
 
+#ifdef STAGE_CONTROL
+vec3 patch_point(Patch record, uint number) { return in_point[number]; }
+#endif
+
 #ifdef STAGE_EVALUATION
 // Neighbours have normals of their own.
 bool has_one_normal(Patch record, vec2 uv) { return all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0))); }
 
-Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 bottom = in_point[0] * (1.0 - uv.x) + in_point[1] * uv.x;
     vec3 top = in_point[3] * (1.0 - uv.x) + in_point[2] * uv.x;
-    return Surface(bottom * (1.0 - uv.y) + top * uv.y,
+    Surface surface =
+        Surface(bottom * (1.0 - uv.y) + top * uv.y,
                    (in_point[1] - in_point[0]) * (1.0 - uv.y) + (in_point[2] - in_point[3]) * uv.y, top - bottom);
+    return surface_point(surface);
 }
 #endif
 

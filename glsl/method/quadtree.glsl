@@ -119,7 +119,7 @@ bool has_one_normal(Patch record, vec2 uv) {
 const Basis CURVE = Basis(vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, -1.0, 1.0, 0.0));
 
 // Inside by the patch's own plan, on edges and at corners by those that all faces there share.
-Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     memoryBarrierBuffer();
     Place place = find_place(record.flags, uv);
     uint flags = borders[record.plan].flags[place.number];
@@ -142,7 +142,7 @@ Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
     precise vec3 position = surface.position + head.xyz;
-    return Surface(position, scale * surface.du, scale * surface.dv);
+    return surface_point(Surface(position, scale * surface.du, scale * surface.dv));
 }
 #endif
 

@@ -17,11 +17,15 @@ const uint CONTROL_POINTS = 16u;
 vec3 control_point(Patch record, uint number) { return control_vertex(controls[record.controls + number]); }
 #endif
 
+#ifdef STAGE_CONTROL
+vec3 patch_point(Patch record, uint number) { return in_point[number]; }
+#endif
+
 #ifdef STAGE_EVALUATION
 bool has_one_normal(Patch record, vec2 uv) { return true; }
 
 // On edges the sums go along the edge first, at corners along the direction that the vertex prefers: so all faces there get the same bits.
-Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint place = find_place(record.flags, uv).number;
     bool turned = place >= 5u ? (record.flags & (PATCH_TURNED_CORNER << (place - 5u))) != 0u : place == 2u || place == 4u;
     vec2 t = turned_round(turned ? uv.y : uv.x, false);
@@ -35,7 +39,7 @@ Surface evaluate_patch(Patch record, uint slot, vec2 uv) {
         bspline_row(u, PICK(8, 2), PICK(9, 6), in_point[10], PICK(11, 14)),
         bspline_row(u, PICK(12, 3), PICK(13, 7), PICK(14, 11), in_point[15]));
 #undef PICK
-    return turned ? Surface(surface.position, surface.dv, surface.du) : surface;
+    return surface_point(turned ? Surface(surface.position, surface.dv, surface.du) : surface);
 }
 #endif
 

@@ -400,7 +400,7 @@ pub fn spacing_name(spacing: Spacing) -> &'static str {
 
 /// A model made ready by the method of a name.
 pub fn prepare(model: &Model, name: &str) -> Result<Prepared> {
-    (method(name)?.prepare)(model, PlanOptions::default())
+    method(name)?.prepare(model, PlanOptions::default())
 }
 
 /// A sum over all patches of all passes.

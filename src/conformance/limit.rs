@@ -281,7 +281,7 @@ fn places() -> impl Iterator<Item = Case> {
 
 fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
     let method = method(setup.method)?;
-    let prepared = (method.prepare)(model, setup.options)?;
+    let prepared = method.prepare(model, setup.options)?;
     let passes = prepared.clone();
     let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
     let truth = truth(context, model, method)?;

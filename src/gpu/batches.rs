@@ -17,6 +17,7 @@ impl Cut {
     /// The tess levels of a patch.
     pub fn levels(&self, pass: &Pass, patch: usize) -> Levels {
         levels(
+            pass.domain,
             &pass.patches[patch],
             self.level,
             self.spacing,

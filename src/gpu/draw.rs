@@ -55,7 +55,8 @@ impl TessellatedSurface {
         };
         let stages = vk::PipelineStageFlags::VERTEX_SHADER
             | RING_STAGES
-            | vk::PipelineStageFlags::FRAGMENT_SHADER;
+            | vk::PipelineStageFlags::FRAGMENT_SHADER
+            | vk::PipelineStageFlags::COMPUTE_SHADER;
         let transfer = vk::PipelineStageFlags::TRANSFER;
         // SAFETY: this function's contract.
         unsafe {
@@ -295,7 +296,7 @@ unsafe fn cmd_make_visible(
     if from.contains(vk::PipelineStageFlags::TRANSFER) {
         written |= vk::AccessFlags::TRANSFER_WRITE;
     }
-    if from.intersects(RING_STAGES) {
+    if from.intersects(RING_STAGES | vk::PipelineStageFlags::COMPUTE_SHADER) {
         written |= vk::AccessFlags::SHADER_WRITE;
     }
     let barrier = vk::MemoryBarrier::default()

@@ -35,7 +35,7 @@ pub struct ExtraFeatures {
 pub struct Support {
     /// The device's Vulkan version.
     pub api_version: u32,
-    /// The first queue family that draws.
+    /// The first queue family that draws and computes: where any draws there is one (Vulkan spec, `VkQueueFlagBits`).
     pub graphics_family: Option<u32>,
     /// Control and evaluation shaders.
     pub tessellation_shader: bool,
@@ -65,7 +65,11 @@ impl Support {
             api_version,
             graphics_family: queues
                 .iter()
-                .position(|family| family.queue_flags.contains(vk::QueueFlags::GRAPHICS))
+                .position(|family| {
+                    family
+                        .queue_flags
+                        .contains(vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE)
+                })
                 .map(|family| family as u32),
             ..Support::default()
         };

@@ -1,6 +1,7 @@
 //! A prepared model in buffers of the device.
 
 use ash::vk;
+use glam::Vec3;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocator;
 
@@ -11,7 +12,7 @@ use crate::gpu::layout::BINDINGS;
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{Buffer, Layout, failed};
 use crate::mesh::Model;
-use crate::method::{Pass, Prepared};
+use crate::method::{Controls, Pass, Prepared};
 use crate::tessellation::Spacing;
 
 /// Who gives patches their slots in the scratch ring.
@@ -77,6 +78,9 @@ pub(super) struct Buffers {
     copies: Vec<(usize, vk::BufferCopy)>,
     staging: Option<usize>,
     positions: usize,
+    points: usize,
+    point_rows: usize,
+    point_terms: usize,
     ring: usize,
     counters: usize,
     counted: usize,
@@ -145,17 +149,20 @@ impl TessellatedSurface {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let copied = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
         let local = MemoryLocation::GpuOnly;
-        let positions: Vec<[f32; 3]> = model
-            .positions()
-            .iter()
-            .map(|position| position.to_array())
-            .collect();
+        let Controls { vertices, points } = self.prepared.controls(model.positions());
+        let positions: Vec<[f32; 3]> = vertices.iter().map(|v| v.to_array()).collect();
         let capture =
             4 + u64::from(self.options.capture_vertices) * size_of::<abi::Captured>() as u64;
         // SAFETY: this function's contract.
         unsafe {
             maker.buffers.positions =
                 maker.table("control vertices", bytemuck::cast_slice(&positions))?;
+            let rules = &self.prepared.points;
+            maker.buffers.points = maker.table("points", bytemuck::cast_slice(&points))?;
+            maker.buffers.point_rows =
+                maker.table("rows of points", bytemuck::cast_slice(&rules.rows))?;
+            maker.buffers.point_terms =
+                maker.table("terms of points", bytemuck::cast_slice(&rules.terms))?;
             maker.buffers.ring =
                 maker.buffer("scratch ring", self.options.ring_bytes, storage, local)?;
             maker.buffers.counters =
@@ -249,25 +256,34 @@ impl TessellatedSurface {
         }
     }
 
-    /// Replaces the control vertices, by positions relative to the model's centre; they arrive with the next [`cmd_upload`](Self::cmd_upload).
+    /// Replaces the control vertices, by positions relative to the model's centre, and what is computed from them; they arrive with the next
+    /// [`cmd_upload`](Self::cmd_upload).
     ///
     /// The staging memory is written at once: no submitted [`cmd_upload`](Self::cmd_upload) may still read it. An engine that computes
-    /// positions on the device writes the [`position_buffer`](Self::position_buffer) instead.
+    /// positions on the device writes the [`position_buffer`](Self::position_buffer) instead, and records
+    /// [`cmd_points`](Self::cmd_points).
     ///
     /// # Panics
     /// When the number of positions is not that of the model, or after [`finish_upload`](Self::finish_upload).
     pub fn write_positions(&mut self, positions: &[[f32; 3]]) {
-        let bytes: &[u8] = bytemuck::cast_slice(positions);
-        let copy = self.buffers.copies[0].1;
+        let vertices: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
+        let points = self.prepared.points.compute(&vertices);
+        self.write_staged(self.buffers.positions, bytemuck::cast_slice(positions));
+        self.write_staged(self.buffers.points, bytemuck::cast_slice(&points));
+    }
+
+    /// Writes what will be copied to a buffer.
+    fn write_staged(&mut self, buffer: usize, bytes: &[u8]) {
+        let mut copies = self.buffers.copies.iter();
+        let copy = copies.find(|(number, _)| *number == buffer);
+        let copy = copy.expect("every table is copied").1;
         assert_eq!(
             bytes.len() as u64,
             copy.size,
             "one position a control vertex"
         );
-        let staging = self
-            .buffers
-            .staging
-            .expect("positions are staged before the upload is finished");
+        let staging = self.buffers.staging;
+        let staging = staging.expect("positions are staged before the upload is finished");
         self.buffers.all[staging].write(copy.src_offset, bytes);
     }
 
@@ -326,6 +342,9 @@ impl Buffers {
             abi::BINDING_COUNTERS => self.counters,
             abi::BINDING_SLOTS => tables[SLOTS],
             abi::BINDING_CAPTURE => self.capture,
+            abi::BINDING_POINTS => self.points,
+            abi::BINDING_POINT_ROWS => self.point_rows,
+            abi::BINDING_POINT_TERMS => self.point_terms,
             table => *tables
                 .get((table - abi::BINDING_TABLES) as usize + SLOTS + 1)
                 .unwrap_or(&tables[0]),

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::method::normalized;
+use crate::method::surface::normalized;
 
 /// Bumps on a lattice, as high as they say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

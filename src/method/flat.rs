@@ -1,23 +1,26 @@
-//! `flat`: bilinear patches. The speed of light that other methods are compared with, and the plainest row of the table.
+//! `flat`: bilinear patches and plain triangles. The speed of light that other methods are compared with, and the plainest row of the table.
 //!
-//! Each of a patch's four control points is the mean of some control vertices: of one at a corner of the mesh, of two in the middle of an
+//! Each of a patch's control points is the mean of some control vertices: of one at a corner of the mesh, of two in the middle of an
 //! n-gon's edge, of all in its centre.
 
 use glam::{Vec2, Vec3};
 
 use crate::error::Result;
-use crate::mesh::Model;
 use crate::mesh::topology::Topology;
+use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Domain, Method, Pass, Prepared, Surface};
+use crate::method::surface::{Controls, Surface, SurfacePoint};
+use crate::method::{Contract, Method, Pass, Prepared};
 use crate::plan::PlanOptions;
+use crate::tessellation::Domain;
 
 /// The row of the table.
 pub const METHOD: Method = Method {
     name: "flat",
-    summary: "bilinear patches over the control mesh",
+    summary: "the faces of the control mesh themselves",
     paper: "none: the baseline",
-    domain: Domain::Quads,
+    schemes: &Scheme::ALL,
+    domains: &[Domain::Quads, Domain::Triangles],
     contract: Contract {
         limit: None,
         normals: None,
@@ -29,33 +32,28 @@ pub const METHOD: Method = Method {
 
 fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
     let topology = model.topology();
-    let mut pass = Pass {
-        shader: "flat",
-        control_points: 4,
-        patches: Vec::new(),
-        controls: Vec::new(),
-        texture: Vec::new(),
-        tables: Vec::new(),
-        scratch_points: Vec::new(),
-        max_level: crate::abi::HIGHEST_LEVEL,
-        twin,
-    };
+    let mut quads = Pass::new("flat", Domain::Quads, 4, quad);
+    let mut triangles = Pass::new("flat_triangles", Domain::Triangles, 3, triangle);
     for part in patches::parts(model) {
+        let pass = match part.domain {
+            Domain::Quads => &mut quads,
+            Domain::Triangles => &mut triangles,
+        };
         let mut patch = patches::patch(topology, part, 0);
         patch.controls = pass.controls.len() as u32;
         pass.controls.extend(controls(topology, part));
         pass.texture.push(patches::texture(model, part, 0));
         pass.patches.push(patch);
     }
-    Ok(Prepared {
-        passes: vec![pass],
-        plans: None,
-    })
+    Ok(Prepared::of([quads, triangles]))
 }
 
-/// Where the vertices of each of the four points end, counted from the list's begin, then the vertices.
+/// Of a triangle its vertices. Of a quad where the vertices of each of the four points end, counted from the list's begin, then the vertices.
 fn controls(topology: &Topology, part: Part) -> Vec<u32> {
     let vertices = topology.face(part.face);
+    if part.domain == Domain::Triangles {
+        return vertices.to_vec();
+    }
     let (n, i) = (vertices.len(), part.corner as usize);
     let points: [Vec<u32>; 4] = if n == 4 {
         std::array::from_fn(|corner| vec![vertices[corner]])
@@ -78,22 +76,34 @@ fn controls(topology: &Topology, part: Part) -> Vec<u32> {
         .collect()
 }
 
-fn twin(pass: &Pass, positions: &[Vec3], patch: usize, uv: Vec2) -> Surface {
+fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let controls = &pass.controls[pass.patches[patch].controls as usize..];
     let point = |corner: usize| {
         let start = if corner == 0 { 4 } else { controls[corner - 1] } as usize;
         let vertices = &controls[start..controls[corner] as usize];
         vertices
             .iter()
-            .map(|&vertex| positions[vertex as usize])
+            .map(|&vertex| given.vertices[vertex as usize])
             .sum::<Vec3>()
             / vertices.len() as f32
     };
     let [a, b, c, d] = std::array::from_fn(point);
     let (bottom, top) = (a * (1.0 - uv.x) + b * uv.x, d * (1.0 - uv.x) + c * uv.x);
-    Surface {
+    let surface = Surface {
         position: bottom * (1.0 - uv.y) + top * uv.y,
         du: (b - a) * (1.0 - uv.y) + (c - d) * uv.y,
         dv: top - bottom,
-    }
+    };
+    surface.point()
+}
+
+fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let controls = &pass.controls[pass.patches[patch].controls as usize..];
+    let [a, b, c] = [0, 1, 2].map(|corner| given.vertices[controls[corner] as usize]);
+    let surface = Surface {
+        position: a * (1.0 - uv.x - uv.y) + b * uv.x + c * uv.y,
+        du: b - a,
+        dv: c - a,
+    };
+    surface.point()
 }

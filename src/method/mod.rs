@@ -14,7 +14,7 @@ use glam::Vec2;
 
 use crate::abi;
 use crate::error::{Error, Result};
-use crate::mesh::Model;
+use crate::mesh::{Model, Scheme};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -45,12 +45,41 @@ pub struct Method {
     pub summary: &'static str,
     /// Where it is described.
     pub paper: &'static str,
+    /// The schemes whose surfaces it renders, or stands in for.
+    pub schemes: &'static [Scheme],
     /// The shapes that its patches can have.
     pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
+    /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
+    prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
+}
+
+impl Method {
     /// Prepares a model.
-    pub prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
+    ///
+    /// # Errors
+    /// [`Error::Option`] when the method does not do the model's scheme, and whatever the method itself refuses.
+    pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
+        let scheme = model.mesh().options().scheme;
+        if self.schemes.contains(&scheme) {
+            return (self.prepare)(model, options);
+        }
+        let able = METHODS
+            .iter()
+            .filter(|method| method.schemes.contains(&scheme));
+        let able: Vec<&str> = able.map(|method| method.name).collect();
+        let own: Vec<&str> = self.schemes.iter().map(|scheme| scheme.name()).collect();
+        Err(Error::Option {
+            option: "--method",
+            problem: format!("{} does not do the scheme {scheme}", self.name),
+            remedy: format!(
+                "choose a method that does ({}), or a scheme that it does ({})",
+                able.join(", "),
+                own.join(", ")
+            ),
+        })
+    }
 }
 
 /// Every method.
@@ -118,6 +147,15 @@ pub struct Pass {
 pub type Twin = fn(&Pass, &Controls, usize, Vec2) -> SurfacePoint;
 
 impl Prepared {
+    /// Passes alone; those without patches are left out.
+    fn of(passes: impl IntoIterator<Item = Pass>) -> Prepared {
+        let passes = passes.into_iter().filter(|pass| !pass.patches.is_empty());
+        Prepared {
+            passes: passes.collect(),
+            ..Prepared::default()
+        }
+    }
+
     /// Control vertices, relative to the model's centre, with the points that are computed from them: what [`Pass::evaluate`] needs.
     pub fn controls(&self, vertices: Vec<glam::Vec3>) -> Controls {
         Controls {

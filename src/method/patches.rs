@@ -1,15 +1,19 @@
-//! What every method's patches have in common: one a quad, one a corner of an n-gon, with their flags, valences and texture coordinates.
+//! What every method's patches have in common: one a triangle or quad that the scheme takes whole, one a corner of other faces, with their
+//! flags, valences and texture coordinates.
 
 use crate::abi;
 use crate::mesh::Model;
 use crate::mesh::topology::Topology;
+use crate::tessellation::Domain;
 
-/// A patch to be: a quad as a whole, or the part of an n-gon at a corner.
+/// A patch to be: a face as a whole, or the part of an n-gon at a corner.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
+    /// Its shape.
+    pub domain: Domain,
     /// The face.
     pub face: u32,
-    /// The n-gon's corner; 0 for quads.
+    /// The n-gon's corner; 0 for whole faces.
     pub corner: u32,
     /// Its ptex number.
     pub ptex: u32,
@@ -18,13 +22,20 @@ pub struct Part {
 /// The parts of every face that is no hole, in ptex order.
 pub fn parts(model: &Model) -> Vec<Part> {
     let topology = model.topology();
+    let scheme = model.mesh().options().scheme;
     let mut parts = Vec::new();
     let mut ptex = 0;
     for face in 0..topology.face_count() as u32 {
         let arity = topology.face(face).len() as u32;
-        let count = if arity == 4 { 1 } else { arity };
+        let whole = scheme.is_whole(arity as usize);
+        let count = if whole { 1 } else { arity };
+        let domain = match arity {
+            3 if whole => Domain::Triangles,
+            _ => Domain::Quads,
+        };
         if !topology.is_hole(face) {
             parts.extend((0..count).map(|corner| Part {
+                domain,
                 face,
                 corner,
                 ptex: ptex + corner,
@@ -38,7 +49,10 @@ pub fn parts(model: &Model) -> Vec<Part> {
 /// The common fields of the patch of a part whose corner 0 is the quad's corner `turn`.
 pub fn patch(topology: &Topology, part: Part, turn: u32) -> abi::Patch {
     let vertices = topology.face(part.face);
-    let (flags, valences) = if vertices.len() == 4 {
+    let (flags, valences) = if part.domain == Domain::Triangles {
+        let valence = |corner: usize| topology.vertex_edges(vertices[corner]).len();
+        (0, [valence(0), valence(1), valence(2), 0])
+    } else if vertices.len() == 4 {
         let corners: [u32; 4] = std::array::from_fn(|i| (turn + i as u32) % 4);
         let edge = |corner: u32| topology.face_edges(part.face)[corner as usize];
         let even = (0..4).filter(|&i| touches_n_gon(topology, edge(corners[i])));
@@ -65,9 +79,12 @@ fn touches_n_gon(topology: &Topology, edge: u32) -> bool {
         .any(|&face| topology.face(face).len() != 4 && !topology.is_hole(face))
 }
 
-/// The texture coordinates at the corners of a part whose corner 0 is the quad's corner `turn`; without any, those of the ptex face.
+/// The texture coordinates at the corners of a part, a triangle's last one twice, whose corner 0 is the quad's corner `turn`; without any, those of the ptex face.
 pub fn texture(model: &Model, part: Part, turn: u32) -> [[f32; 2]; 4] {
-    let own = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let own = match part.domain {
+        Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]],
+    };
     let mesh = model.mesh();
     let corners = match mesh.texture() {
         None => own,
@@ -79,7 +96,9 @@ pub fn texture(model: &Model, part: Part, turn: u32) -> [[f32; 2]; 4] {
                 .collect();
             let (n, i) = (values.len(), part.corner as usize);
             let middle = |other: usize| (values[i] + values[other % n]) / 2.0;
-            let corners = if n == 4 {
+            let corners = if part.domain == Domain::Triangles {
+                [values[0], values[1], values[2], values[2]]
+            } else if n == 4 {
                 [values[0], values[1], values[2], values[3]]
             } else {
                 [

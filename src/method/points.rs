@@ -60,11 +60,14 @@ impl Points {
         let first = self.terms.len() as u32;
         let mut flags = 0;
         match row {
-            Row::Blend(mask) | Row::Normals(mask) => self.terms.extend(mask.iter().map(|&(v, w)| term(v, w, 0.0, 0.0))),
+            Row::Blend(mask) | Row::Normals(mask) => self
+                .terms
+                .extend(mask.iter().map(|&(v, w)| term(v, w, 0.0, 0.0))),
             Row::Limit(masks) => self.terms.extend(joined(masks)),
             Row::Ring { middle, ends, open } => {
                 let all = std::iter::once(&middle).chain(ends);
-                self.terms.extend(all.map(|&vertex| term(vertex, 0.0, 0.0, 0.0)));
+                self.terms
+                    .extend(all.map(|&vertex| term(vertex, 0.0, 0.0, 0.0)));
                 flags = if open { abi::ROW_OPEN } else { 0 };
             }
         }
@@ -108,7 +111,9 @@ impl Points {
         let terms = &self.terms[row.first as usize..][..count];
         let vertex = |term: &PointTerm| vertices[term.source as usize];
         let sum = |weight: fn(&PointTerm) -> f32| {
-            terms.iter().fold(Vec3::ZERO, |sum, term| sum + weight(term) * vertex(term))
+            terms
+                .iter()
+                .fold(Vec3::ZERO, |sum, term| sum + weight(term) * vertex(term))
         };
         let position = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
         match kind {
@@ -126,7 +131,10 @@ impl Points {
             }
             abi::POINTS_RING => {
                 let middle = position(&terms[0]);
-                let spokes: Vec<Vec3> = terms[1..].iter().map(|term| position(term) - middle).collect();
+                let spokes: Vec<Vec3> = terms[1..]
+                    .iter()
+                    .map(|term| position(term) - middle)
+                    .collect();
                 let faces = spokes.len() - usize::from(row.count & abi::ROW_OPEN != 0);
                 let normal = (0..faces).fold(Vec3::ZERO, |sum, i| {
                     sum + spokes[i].cross(spokes[(i + 1) % spokes.len()])
@@ -160,11 +168,17 @@ fn term(source: u32, position: f64, du: f64, dv: f64) -> PointTerm {
 
 /// The terms of three masks, each vertex once.
 fn joined(masks: [&Mask; 3]) -> Vec<PointTerm> {
-    let mut vertices: Vec<u32> = masks.iter().flat_map(|mask| mask.iter().map(|&(v, _)| v)).collect();
+    let mut vertices: Vec<u32> = masks
+        .iter()
+        .flat_map(|mask| mask.iter().map(|&(v, _)| v))
+        .collect();
     vertices.sort_unstable();
     vertices.dedup();
     let weight = |mask: &Mask, vertex: u32| -> f64 {
-        mask.iter().filter(|&&(v, _)| v == vertex).map(|&(_, w)| w).sum()
+        mask.iter()
+            .filter(|&&(v, _)| v == vertex)
+            .map(|&(_, w)| w)
+            .sum()
     };
     let [position, du, dv] = masks;
     vertices
@@ -197,9 +211,17 @@ mod tests {
     #[test]
     fn unit_vectors_have_unit_length() {
         for scale in [1e-30, 1e-3, 1.0, 7e5, 1e30] {
-            for v in [Vec3::X, Vec3::new(1.0, -2.0, 3.0), Vec3::new(-1e-6, 1.0, 1.9)] {
+            for v in [
+                Vec3::X,
+                Vec3::new(1.0, -2.0, 3.0),
+                Vec3::new(-1e-6, 1.0, 1.9),
+            ] {
                 let unit = unit(scale * v).as_dvec3();
-                assert!((unit.length() - 1.0).abs() < 3e-7, "{scale} {v}: {}", unit.length());
+                assert!(
+                    (unit.length() - 1.0).abs() < 3e-7,
+                    "{scale} {v}: {}",
+                    unit.length()
+                );
                 assert!(unit.distance(v.as_dvec3().normalize()) < 3e-7);
             }
         }
@@ -211,14 +233,22 @@ mod tests {
         let corners = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         let mut vertices = vec![Vec3::new(0.0, 0.0, 5.0)];
         vertices.extend(corners.map(|[x, y]| Vec3::new(x, y, 5.0)));
-        for (ends, open) in [(&[1, 2, 3, 4][..], false), (&[1, 2, 3], true), (&[2, 3], true)] {
+        for (ends, open) in [
+            (&[1, 2, 3, 4][..], false),
+            (&[1, 2, 3], true),
+            (&[2, 3], true),
+        ] {
             let mut points = Points::default();
             points.begin(abi::POINTS_BLEND, 0);
             for vertex in 0..5 {
                 points.push(Row::Blend(&Mask::from_slice(&[(vertex, 1.0)])));
             }
             points.begin(abi::POINTS_RING, 0);
-            points.push(Row::Ring { middle: 0, ends, open });
+            points.push(Row::Ring {
+                middle: 0,
+                ends,
+                open,
+            });
             let computed = points.compute(&vertices);
             assert_eq!(computed[0].position, [0.0, 0.0, 5.0]);
             assert!(Vec3::from(computed[0].normal).distance(Vec3::Z) < 3e-7);

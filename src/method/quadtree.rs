@@ -12,13 +12,13 @@ use rayon::prelude::*;
 
 use crate::abi;
 use crate::error::Result;
-use crate::mesh::Model;
 use crate::mesh::topology::Topology;
+use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::{Contract, Method, Pass, Prepared};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
-use crate::tessellation::Domain;
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
+use crate::tessellation::Domain;
 
 use border::{Borders, Irregular};
 use plain::is_turned_corner;
@@ -28,6 +28,7 @@ pub const METHOD: Method = Method {
     name: "quadtree",
     summary: "the exact Catmull-Clark limit, by adaptive quadtrees",
     paper: "Brainerd, Foley, Kraemer, Moreton, Nießner 2016",
+    schemes: &[Scheme::CatmullClark],
     domains: &[Domain::Quads],
     contract: Contract {
         limit: Some(1e-6),
@@ -149,14 +150,9 @@ fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
         build_seconds: started.elapsed().as_secs_f64(),
         ..statistics
     };
-    let passes = [regular, irregular]
-        .into_iter()
-        .filter(|pass| !pass.patches.is_empty())
-        .collect();
     Ok(Prepared {
-        passes,
         plans: Some(plans),
-        ..Prepared::default()
+        ..Prepared::of([regular, irregular])
     })
 }
 

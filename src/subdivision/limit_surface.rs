@@ -2,23 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::mesh::ControlMesh;
 use crate::mesh::topology::Topology;
+use crate::mesh::{ControlMesh, Scheme};
 use crate::patch::bspline;
 use crate::subdivision::limit::{LimitStencil, limit_stencil};
 use crate::subdivision::masks::Blend;
 use crate::subdivision::refine::{refine, with_neighbours};
 use crate::subdivision::regular::bspline_patch;
-
-/// The subdivision scheme whose limit is asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scheme {
-    /// Catmull and Clark's.
-    #[default]
-    CatmullClark,
-    /// Linear refinement: the faces themselves, n-gons as one quad a corner around their mean.
-    Bilinear,
-}
 
 /// A point of the limit surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,12 +54,12 @@ struct Cell {
 const DEEPEST: u32 = 60;
 
 impl LimitSurface {
-    /// The Catmull-Clark limit of a mesh.
+    /// The limit of a mesh under its own scheme.
     pub fn new(mesh: &ControlMesh) -> LimitSurface {
-        LimitSurface::of_scheme(mesh, Scheme::CatmullClark)
+        LimitSurface::of_scheme(mesh, mesh.options().scheme)
     }
 
-    /// The limit of a mesh under a scheme.
+    /// The limit of a mesh under a scheme that may not be its own.
     pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
         let ptex = mesh.faces().enumerate().flat_map(|(face, vertices)| {
             let corners = if vertices.len() == 4 {
@@ -111,7 +101,7 @@ impl LimitSurface {
         let uv = DVec2::new(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
         Some(match self.scheme {
             Scheme::CatmullClark => self.catmull_clark(face, corner, uv),
-            Scheme::Bilinear => self.bilinear(face, corner, uv),
+            _ => self.bilinear(face, corner, uv),
         })
     }
 

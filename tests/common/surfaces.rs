@@ -36,7 +36,7 @@ impl Surfaces {
         let method = method("quadtree").expect("it is in the table");
         let model = Model::new(mesh);
         Surfaces {
-            prepared: (method.prepare)(&model, options).expect("sound options"),
+            prepared: method.prepare(&model, options).expect("sound options"),
             truth: LimitSurface::new(model.mesh()),
             diagonal: super::diagonal(model.mesh()),
             model,
@@ -49,14 +49,14 @@ impl Surfaces {
         stride: usize,
         mut coordinates: impl FnMut(usize) -> Vec<[f32; 2]>,
     ) -> Worst {
-        let positions = self.model.positions();
+        let controls = self.prepared.controls(self.model.positions());
         let mut worst = Worst::default();
         for pass in &self.prepared.passes {
             for number in (0..pass.patches.len()).step_by(stride) {
                 let patch = pass.patches[number];
                 for uv in coordinates(number) {
                     let [u, v] = to_ptex(&patch, uv).map(f64::from);
-                    let point = pass.evaluate(&positions, number, Vec2::from(uv));
+                    let point = pass.evaluate(&controls, number, Vec2::from(uv));
                     let truth = self.truth.evaluate(patch.ptex as usize, u, v);
                     let truth = truth.expect("patches are no holes");
                     let position = point.position.as_dvec3() + self.model.centre();
@@ -68,7 +68,7 @@ impl Surfaces {
                     let (du, dv) = (truth.du.normalize_or_zero(), truth.dv.normalize_or_zero());
                     let shortest = truth.du.length().min(truth.dv.length()) / self.diagonal;
                     let angle = point
-                        .normal()
+                        .normal
                         .as_dvec3()
                         .angle_between(truth.normal())
                         .to_degrees();

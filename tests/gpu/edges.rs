@@ -38,7 +38,7 @@ fn hold_all(gpu: &Gpu, name: &str, model: &Model, levels: &[f32]) -> Compared {
         .collect();
     let mut compared = Compared::default();
     for method in METHODS.iter().filter(|method| method.contract.watertight) {
-        let prepared = (method.prepare)(model, PlanOptions::default()).expect("sound options");
+        let prepared = method.prepare(model, PlanOptions::default()).expect("sound options");
         let options = capturing(&prepared, &cuts);
         let workarounds = &gpu.device.info().workarounds;
         let loaded = gpu.load(model, prepared, workarounds, options);
@@ -63,7 +63,7 @@ fn shallow_plans_leave_no_t_junctions() {
         max_level: 2,
         ..PlanOptions::default()
     };
-    let prepared = (METHODS[0].prepare)(&model, options).expect("sound options");
+    let prepared = METHODS[0].prepare(&model, options).expect("sound options");
     let cuts = SPACINGS.map(|spacing| cut(8.0, spacing));
     let workarounds = &gpu.device.info().workarounds;
     let capturing = capturing(&prepared, &cuts);
@@ -83,7 +83,7 @@ fn displaced_surfaces_have_no_cracks() {
     let Some(gpu) = Gpu::open() else { return };
     for name in ["hull", "ngons", "creased-torus", "sheet"] {
         let model = shapes::built_in(name);
-        let prepared = (METHODS[0].prepare)(&model, PlanOptions::default()).expect("sound");
+        let prepared = METHODS[0].prepare(&model, PlanOptions::default()).expect("sound");
         let cuts: Vec<Cut> = [3.0, 8.0]
             .iter()
             .flat_map(|&l| SPACINGS.map(|s| cut(l, s)))

@@ -29,14 +29,14 @@ impl Worst {
 
 /// Against the CPU's twin, every `step`th vertex.
 pub fn from_twin(model: &Model, prepared: &Prepared, frame: &Frame, step: usize) -> Worst {
-    let positions = model.positions();
+    let controls = prepared.controls(model.positions());
     let diagonal = common::diagonal(model.mesh());
     let mut worst = Worst::default();
     for (pass, vertex) in sampled(prepared, frame, step) {
         let uv = Vec2::from(vertex.uv);
-        let twin = pass.evaluate(&positions, vertex.patch_number as usize, uv);
+        let twin = pass.evaluate(&controls, vertex.patch_number as usize, uv);
         let distance = Vec3::from(vertex.position).distance(twin.position);
-        let angle = degrees(vertex.normal, twin.normal().as_dvec3());
+        let angle = degrees(vertex.normal, twin.normal.as_dvec3());
         worst.add(f64::from(distance) / diagonal, angle);
     }
     worst
@@ -63,7 +63,7 @@ pub fn from_truth(
         let sample = truth.evaluate(patch.ptex as usize, u, v);
         let sample = sample.expect("holes are not drawn");
         let position = Vec3::from(vertex.position).as_dvec3() + model.centre();
-        let angle = degrees(vertex.normal, sample.normal());
+        let angle = degrees(vertex.normal, sample.normal);
         worst.add(position.distance(sample.position) / diagonal, angle);
     }
     worst

@@ -35,7 +35,7 @@ impl<'a> Drawing<'a> {
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
         let started = Instant::now();
-        let prepared = (method(name)?.prepare)(model, PlanOptions::default())?;
+        let prepared = method(name)?.prepare(model, PlanOptions::default())?;
         let planned = Instant::now();
         let device = gpu.device.raw();
         let mut drawing = Drawing {

@@ -57,7 +57,7 @@ fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>
     };
     let started = Instant::now();
     let model = Model::new(mesh.clone());
-    let prepared = (method("quadtree")?.prepare)(&model, options)?;
+    let prepared = method("quadtree")?.prepare(&model, options)?;
     let seconds = started.elapsed().as_secs_f64();
     let plans = prepared.plans.unwrap_or_default();
     let [internal, regular, boundary, crease, terminal, extraordinary] = plans.nodes;

@@ -326,13 +326,16 @@ fn statistics(
 impl Scene<'_> {
     /// Frames the surface itself: the control mesh may reach far beyond it.
     fn frame(&self, prepared: &Prepared) -> View {
-        let positions = self.model.positions();
-        let samples = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]].map(Vec2::from);
+        let controls = prepared.controls(self.model.positions());
+        let samples = |domain| match domain {
+            Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
+            Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.3, 0.3]],
+        };
         let points = prepared.passes.iter().flat_map(|pass| {
-            let positions = &positions;
+            let controls = &controls;
             let patches = 0..pass.patches.len();
             patches.flat_map(move |patch| {
-                samples.map(|uv| pass.evaluate(positions, patch, uv).position)
+                samples(pass.domain).map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
             })
         });
         self.camera

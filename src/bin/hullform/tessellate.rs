@@ -156,7 +156,7 @@ fn add_patches(surface: &mut Surface, captured: &[abi::Captured], model: &Model,
         let patch = &pass.patches[number];
         let first = surface.points.len() as u32;
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
-        let triangles = triangulate(&uv)
+        let triangles = triangulate(pass.domain, &uv)
             .into_iter()
             .map(|triangle| triangle.map(|i| first + i));
         surface.triangles.extend(triangles);

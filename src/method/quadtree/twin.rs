@@ -6,8 +6,8 @@
 use glam::{Vec2, Vec3};
 
 use crate::abi;
-use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::Pass;
+use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::patch::bspline::{Basis, basis, basis_of};
 use crate::patch::crease::crease_basis;
 use crate::plan::{Leaf, Plans, walk};

@@ -1,0 +1,9 @@
+// Points that `points.comp` or the host computed from the control vertices.
+#ifndef POINTS_GLSL
+#define POINTS_GLSL
+
+#include "lib/interface.glsl"
+
+layout(set = 0, binding = BINDING_POINTS, scalar) readonly buffer PointTable { Point points[]; };
+
+#endif

@@ -1,0 +1,50 @@
+// What becomes of a point of a patch, in whichever stage patches are evaluated: the fragment shader gets it, and it is recorded.
+#ifndef VERTEX_GLSL
+#define VERTEX_GLSL
+
+#include "lib/displacement.glsl"
+#include "lib/interface.glsl"
+
+layout(location = 0) out vec3 out_position;
+layout(location = 1) out vec3 out_normal;
+layout(location = 2) out vec2 out_uv;
+layout(location = 3) out vec2 out_texture;
+layout(location = 4) flat out uint out_patch;
+
+layout(set = 0, binding = BINDING_TEXTURE, scalar) readonly buffer TextureTable { vec2 texture_corners[]; };
+
+layout(set = 0, binding = BINDING_CAPTURE, scalar) buffer Capture {
+    uint captured_count;
+    Captured captured[];
+};
+
+// Records the vertex; vertices beyond the capture's end are counted all the same.
+void capture(uint number, vec2 uv, Point point) {
+    uint place = atomicAdd(captured_count, 1u);
+    if (place < frame.capture_vertices) captured[place] = Captured(number, uv, point.position, point.normal);
+}
+
+// Linear between the patch's corners. Twin of `Pass::texture_coordinates`.
+vec2 texture_coordinates(uint number, vec2 uv) {
+    vec2 a = texture_corners[4u * number];
+    vec2 b = texture_corners[4u * number + 1u];
+    vec2 c = texture_corners[4u * number + 2u];
+#ifdef TRIANGLES
+    return (1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c;
+#else
+    return mix(mix(a, b, uv.x), mix(texture_corners[4u * number + 3u], c, uv.x), uv.y);
+#endif
+}
+
+void write_vertex(Patch record, uint number, vec2 uv, Point point) {
+    if (frame.displacement.x != 0.0 && has_one_normal(record, uv)) displace(point.position, point.normal);
+    out_position = point.position;
+    out_normal = point.normal;
+    out_uv = uv;
+    out_texture = texture_coordinates(number, uv);
+    out_patch = number;
+    gl_Position = frame.view_projection * vec4(point.position, 1.0);
+    if ((frame.flags & FRAME_CAPTURE) != 0u) capture(number, uv, point);
+}
+
+#endif

@@ -1,0 +1,131 @@
+//! Computing points from the control vertices on the device: for meshes that move there.
+
+use ash::vk;
+
+use crate::abi;
+use crate::error::{Error, Result};
+use crate::gpu::layout::STAGES;
+use crate::gpu::ring::RING_STAGES;
+use crate::gpu::{Layout, TessellatedSurface, failed, shaders};
+
+/// The pipeline that computes points, the same for all methods.
+#[derive(Debug)]
+pub struct PointPipeline {
+    pipeline: vk::Pipeline,
+}
+
+impl PointPipeline {
+    /// Builds it. The cache may go afterwards.
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    ///
+    /// # Safety
+    /// `device` is live; `layout` and `cache` (or null) are of this device.
+    pub unsafe fn new(
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+    ) -> Result<PointPipeline> {
+        let words = shaders::spirv("points.comp")
+            .ok_or_else(|| Error::Refused("there is no shader module points.comp".into()))?;
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
+        // SAFETY: the words are a valid module; the tests validate every one.
+        let module = unsafe { device.create_shader_module(&info, None) }
+            .map_err(failed("vkCreateShaderModule"))?;
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module)
+            .name(c"main");
+        let info = vk::ComputePipelineCreateInfo::default()
+            .stage(stage)
+            .layout(layout.pipeline());
+        // SAFETY: everything that the info points to lives through the call; the module is not needed once the pipeline is there.
+        let made = unsafe {
+            let made = device.create_compute_pipelines(cache, &[info], None);
+            device.destroy_shader_module(module, None);
+            made
+        };
+        made.map(|pipelines| PointPipeline {
+            pipeline: pipelines[0],
+        })
+        .map_err(|(_, code)| failed("vkCreateComputePipelines")(code))
+    }
+
+    /// Destroys it.
+    ///
+    /// # Safety
+    /// `device` made it, and no submitted command still uses it.
+    pub unsafe fn destroy(self, device: &ash::Device) {
+        // SAFETY: this function's contract.
+        unsafe { device.destroy_pipeline(self.pipeline, None) };
+    }
+}
+
+/// The stages that read points.
+const READERS: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
+    vk::PipelineStageFlags::VERTEX_SHADER.as_raw() | RING_STAGES.as_raw(),
+);
+
+impl TessellatedSurface {
+    /// Records the computation of the points from the control vertices in [`position_buffer`](Self::position_buffer), with the same bits as
+    /// [`write_positions`](Self::write_positions) has. Methods without such points record nothing.
+    ///
+    /// It waits for the draws of earlier frames, and later draws wait for it. Binds a compute pipeline and set 0, and pushes constants.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, on a queue that also computes; control vertices are
+    /// visible to `SHADER_READ` in the compute stage. `layout` made this surface and `pipeline`. All of them live until the commands have
+    /// been executed.
+    pub unsafe fn cmd_points(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &PointPipeline,
+    ) {
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let Some(&set) = self.sets.first() else {
+            return;
+        };
+        let mut before = READERS | compute;
+        for step in self
+            .prepared
+            .points
+            .steps
+            .iter()
+            .filter(|step| step.count > 0)
+        {
+            let constants = bytemuck::bytes_of(step);
+            let groups = step.count.div_ceil(abi::POINT_INVOCATIONS);
+            let bind = vk::PipelineBindPoint::COMPUTE;
+            // SAFETY: this function's contract.
+            unsafe {
+                cmd_points_barrier(device, cmd, before, compute);
+                device.cmd_bind_pipeline(cmd, bind, pipeline.pipeline);
+                device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &[set], &[]);
+                device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
+                device.cmd_dispatch(cmd, groups, 1, 1);
+            }
+            before = compute;
+        }
+        // SAFETY: as above.
+        unsafe { cmd_points_barrier(device, cmd, compute, READERS) };
+    }
+}
+
+/// # Safety
+/// `cmd` is recording on `device`, outside of a render pass.
+unsafe fn cmd_points_barrier(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    from: vk::PipelineStageFlags,
+    to: vk::PipelineStageFlags,
+) {
+    let barrier = vk::MemoryBarrier::default()
+        .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+        .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE);
+    let none = vk::DependencyFlags::empty();
+    // SAFETY: this function's contract.
+    unsafe { device.cmd_pipeline_barrier(cmd, from, to, none, &[barrier], &[], &[]) };
+}

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Place, Result};
+use crate::mesh::Scheme;
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
 pub const INFINITE_SHARPNESS: f32 = 10.0;
@@ -39,9 +40,11 @@ pub enum TriangleSubdivision {
     Smooth,
 }
 
-/// The options of the scheme, as the tags of an OBJ file give them.
+/// The scheme, and its options as the tags of an OBJ file give them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SchemeOptions {
+    /// Which scheme refines the mesh.
+    pub scheme: Scheme,
     /// Boundary rule (`interpolateboundary`).
     pub boundary: BoundaryInterpolation,
     /// Crease decay (`creasemethod`).
@@ -182,9 +185,19 @@ impl ControlMesh {
         self.options
     }
 
-    /// The number of ptex faces: one a quad, n an n-gon; holes keep their numbers.
+    /// The same mesh under another scheme.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for faces and tags that the scheme knows nothing of, see [`Scheme::check`].
+    pub fn with_scheme(mut self, scheme: Scheme) -> Result<ControlMesh> {
+        self.options.scheme = scheme;
+        scheme.check(&self)?;
+        Ok(self)
+    }
+
+    /// The number of ptex faces: one a quad, n an n-gon; holes keep their numbers. Triangles that the scheme takes whole have one.
     pub fn ptex_count(&self) -> usize {
-        self.faces().map(ptex_faces).sum()
+        self.faces().map(|face| self.ptex_faces(face)).sum()
     }
 
     /// The first ptex number of each face.
@@ -193,10 +206,18 @@ impl ControlMesh {
         self.faces()
             .map(|face| {
                 let first = next;
-                next += ptex_faces(face) as u32;
+                next += self.ptex_faces(face) as u32;
                 first
             })
             .collect()
+    }
+
+    fn ptex_faces(&self, face: &[u32]) -> usize {
+        if self.options.scheme.is_whole(face.len()) {
+            1
+        } else {
+            face.len()
+        }
     }
 
     /// The least and greatest corner of the control vertices' bounding box.
@@ -206,11 +227,6 @@ impl ControlMesh {
             .iter()
             .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)))
     }
-}
-
-/// How many ptex faces a face has: one when it is a quad, else one a corner.
-fn ptex_faces(face: &[u32]) -> usize {
-    if face.len() == 4 { 1 } else { face.len() }
 }
 
 impl ControlMeshBuilder {
@@ -247,11 +263,18 @@ impl ControlMeshBuilder {
         self
     }
 
+    /// Sets the scheme and leaves its options.
+    pub fn scheme(mut self, scheme: Scheme) -> Self {
+        self.mesh.options.scheme = scheme;
+        self
+    }
+
     /// Checks everything and hands out the mesh.
     ///
     /// # Errors
     /// [`Error::Input`] for a mesh without faces, a face of fewer than three vertices or one that names a vertex twice,
-    /// an index out of range, a position that is not finite, and a tag that names no edge, vertex or face of the mesh.
+    /// an index out of range, a position that is not finite, a tag that names no edge, vertex or face of the mesh, and what
+    /// the scheme knows nothing of.
     pub fn build(self) -> Result<ControlMesh> {
         let ControlMeshBuilder {
             mut mesh,
@@ -261,6 +284,7 @@ impl ControlMeshBuilder {
         check_positions(&mesh)?;
         check_faces(&mesh)?;
         check_tags(&mesh)?;
+        mesh.options.scheme.check(&mesh)?;
         Ok(mesh)
     }
 }

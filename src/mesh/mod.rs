@@ -4,8 +4,10 @@ mod builtin;
 mod control_mesh;
 mod model;
 mod obj;
+mod scheme;
 pub mod sharpness;
 pub mod topology;
+mod triangulate;
 
 pub use builtin::{BUILTINS, DEFAULT_BUILTIN, builtin};
 pub use control_mesh::{
@@ -14,3 +16,5 @@ pub use control_mesh::{
 };
 pub use model::Model;
 pub use obj::{read_obj, read_obj_bytes};
+pub use scheme::Scheme;
+pub use triangulate::{Triangulation, triangulated};

@@ -144,6 +144,7 @@ fn options() -> impl Strategy<Value = SchemeOptions> {
         } else {
             TriangleSubdivision::CatmullClark
         },
+        ..SchemeOptions::default()
     })
 }
 

@@ -191,6 +191,7 @@ impl Draft {
                 TriangleSubdivision::CatmullClark,
                 TriangleSubdivision::Smooth,
             ]),
+            ..SchemeOptions::default()
         }
     }
 }

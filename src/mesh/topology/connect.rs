@@ -48,6 +48,41 @@ impl Topology {
         options: SchemeOptions,
         edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
     ) -> Topology {
+        let mut topology = Topology::of_faces(faces, vertex_sharpness, options);
+        let sides = topology.sides();
+        let first = first_alike(topology.vertex_count(), &sides);
+        topology.join(&sides, &first, |_, a, b| edge(a, b));
+        topology.relate();
+        topology
+    }
+
+    /// As [`Topology::connect`], but sides are one edge when their keys are equal: two edges may join the same two vertices, as those do that
+    /// cut off an interior vertex of two triangles. The keys stand in the order of the faces' sides; `edge` is told them.
+    pub(crate) fn connect_keyed<'a>(
+        faces: impl Iterator<Item = &'a [u32]> + Clone,
+        keys: &[u32],
+        vertex_sharpness: Vec<f32>,
+        options: SchemeOptions,
+        edge: impl Fn(u32, u32, u32) -> (f32, [f32; 2]),
+    ) -> Topology {
+        let mut topology = Topology::of_faces(faces, vertex_sharpness, options);
+        let sides = topology.sides();
+        let mut first_of = FxHashMap::default();
+        let first: Vec<u32> = (0..)
+            .zip(keys)
+            .map(|(side, &key)| *first_of.entry(key).or_insert(side))
+            .collect();
+        topology.join(&sides, &first, |side, a, b| edge(keys[side], a, b));
+        topology.relate();
+        topology
+    }
+
+    /// Faces that do not know each other yet.
+    fn of_faces<'a>(
+        faces: impl Iterator<Item = &'a [u32]> + Clone,
+        vertex_sharpness: Vec<f32>,
+        options: SchemeOptions,
+    ) -> Topology {
         let corners = faces.clone().map(<[u32]>::len).sum();
         let mut topology = Topology {
             face_offsets: Vec::with_capacity(faces.size_hint().0 + 1),
@@ -64,28 +99,42 @@ impl Topology {
                 .push(topology.face_vertices.len() as u32);
         }
         topology.holes = vec![false; topology.face_count()];
-        topology.join(edge);
-        topology.relate();
         topology
     }
 
-    /// Numbers the edges in the order in which the faces first show them.
-    fn join(&mut self, edge: impl Fn(u32, u32) -> (f32, [f32; 2])) {
+    /// The same with other holes.
+    pub(crate) fn with_holes(mut self, holes: Vec<bool>) -> Topology {
+        assert_eq!(holes.len(), self.face_count(), "one entry a face");
+        self.holes = holes;
+        self
+    }
+
+    /// The two ends of every side of every face.
+    fn sides(&self) -> Vec<[u32; 2]> {
         let mut sides = Vec::with_capacity(self.face_vertices.len());
         for face in 0..self.face_count() as u32 {
             let vertices = self.face(face);
             let ends = vertices[1..].iter().chain(&vertices[..1]);
             sides.extend(vertices.iter().zip(ends).map(|(&a, &b)| [a, b]));
         }
+        sides
+    }
+
+    /// Numbers the edges in the order in which the faces first show them; `first` tells for each side the first of its edge.
+    fn join(
+        &mut self,
+        sides: &[[u32; 2]],
+        first: &[u32],
+        edge: impl Fn(usize, u32, u32) -> (f32, [f32; 2]),
+    ) {
         self.face_edges = Vec::with_capacity(sides.len());
-        let first = first_alike(self.vertex_count(), &sides);
         let is_first = |&(side, &first): &(usize, &u32)| side == first as usize;
         let edges = first.iter().enumerate().filter(is_first).count();
         self.edges = Vec::with_capacity(edges);
         for (side, &first) in first.iter().enumerate() {
             let number = if first as usize == side {
                 let vertices = sides[side];
-                let (sharpness, next) = edge(vertices[0], vertices[1]);
+                let (sharpness, next) = edge(side, vertices[0], vertices[1]);
                 self.edges.push(Edge {
                     vertices,
                     sharpness,
@@ -117,24 +166,23 @@ impl Topology {
             .iter()
             .map(|&vertex| self.vertex_sharpness(vertex))
             .collect();
-        let topology = Topology::connect(
+        let keys: Vec<u32> = faces
+            .iter()
+            .flat_map(|&face| self.face_edges(face))
+            .copied()
+            .collect();
+        let topology = Topology::connect_keyed(
             local.iter().map(|face| &face[..]),
+            &keys,
             sharpness,
             self.options,
-            |a, b| {
-                let [a, b] = [a, b].map(|local| vertices[local as usize]);
-                let edge = self
-                    .find_edge(a, b)
-                    .expect("an edge of a face is an edge of the mesh");
-                (edge.sharpness, [edge.next_at(a), edge.next_at(b)])
+            |edge, a, b| {
+                let edge = self.edge(edge);
+                let next = [a, b].map(|local| edge.next_at(vertices[local as usize]));
+                (edge.sharpness, next)
             },
         );
         (topology, vertices)
-    }
-
-    fn find_edge(&self, a: u32, b: u32) -> Option<&Edge> {
-        let edges = self.vertex_edges(a).iter().map(|&edge| self.edge(edge));
-        edges.into_iter().find(|edge| edge.other(a) == b)
     }
 
     /// Fills the lists that answer "which faces and edges touch".

@@ -138,7 +138,7 @@ mod tests {
             assert!((value.iter().sum::<f64>() - 1.0).abs() < 1e-15);
             assert!(du.iter().sum::<f64>().abs() < 1e-15);
             assert!(dv.iter().sum::<f64>().abs() < 1e-15);
-            assert!(value.iter().all(|&weight| weight >= 0.0));
+            assert!(value.iter().all(|&weight| weight >= -1e-16));
         }
     }
 

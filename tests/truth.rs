@@ -10,8 +10,8 @@ use std::path::Path;
 use glam::DVec3;
 use hullform::mesh::sharpness::is_infinite;
 use hullform::mesh::topology::Topology;
-use hullform::mesh::{ControlMesh, read_obj};
-use hullform::subdivision::{LimitSample, LimitSurface, Scheme};
+use hullform::mesh::{ControlMesh, Scheme, read_obj};
+use hullform::subdivision::{LimitSample, LimitSurface};
 
 /// Shapes whose faces name a vertex twice; the reader refuses them.
 const REFUSED: [&str; 2] = ["catmark_nonman_quadpole8", "catmark_nonman_edges"];
@@ -59,11 +59,18 @@ struct Corner {
     extraordinary: bool,
 }
 
+fn is_whole_triangle(topology: &Topology, face: u32) -> bool {
+    topology.face(face).len() == 3 && topology.options().scheme.is_whole(3)
+}
+
 /// The control vertex at a corner of a ptex face, if one is there: an n-gon's part has one at (0, 0) only.
 fn vertex_at(topology: &Topology, (face, corner): (u32, u32), uv: [f64; 2]) -> Option<(u32, u32)> {
     let quad = topology.face(face).len() == 4;
+    let triangle = is_whole_triangle(topology, face);
     match uv {
         [0.0, 0.0] => Some((face, corner)),
+        [1.0, 0.0] if triangle => Some((face, 1)),
+        [0.0, 1.0] if triangle => Some((face, 2)),
         [1.0, 0.0] if quad => Some((face, 1)),
         [1.0, 1.0] if quad => Some((face, 2)),
         [0.0, 1.0] if quad => Some((face, 3)),
@@ -89,10 +96,14 @@ fn corner(surface: &LimitSurface, ptex: usize, uv: [f64; 2]) -> Corner {
     let sharp_vertex = is_infinite(topology.vertex_sharpness(vertex));
     let faces = topology.fan(face, corner).faces.len();
     let dart = sharp == 1 && !sharp_vertex;
+    let (inside, beside) = match is_whole_triangle(topology, face) {
+        true => (6, 3),
+        false => (4, 2),
+    };
     let regular = match sharp {
         _ if sharp_vertex => 1,
-        0 => 4,
-        2 => 2,
+        0 => inside,
+        2 => beside,
         _ => 1,
     };
     Corner {
@@ -152,14 +163,12 @@ fn hold(name: &str, surface: &LimitSurface, diagonal: f64, reference: &Reference
 }
 
 fn compare(name: &str, mesh: &ControlMesh, references: &[Reference]) {
-    let bilinear = name.starts_with("bilinear");
-    let scheme = if bilinear {
-        Scheme::Bilinear
-    } else {
-        Scheme::CatmullClark
+    let surface = LimitSurface::new(mesh);
+    let points = match mesh.options().scheme.is_triangular() {
+        true => 15,
+        false => 25,
     };
-    let surface = LimitSurface::of_scheme(mesh, scheme);
-    assert_eq!(references.len(), 25 * surface.ptex_count(), "{name}");
+    assert_eq!(references.len(), points * surface.ptex_count(), "{name}");
     let limits = references
         .iter()
         .filter(|reference| hold(name, &surface, common::diagonal(mesh), reference));
@@ -172,10 +181,8 @@ fn limits_agree_with_the_references_of_every_shape() {
     let mut compared = 0;
     for path in &files {
         let name = common::stem(path);
-        if name.starts_with("loop") {
-            continue;
-        }
-        let mesh = read_obj(path);
+        let scheme = Scheme::of_file(path).expect("shapes are named after their schemes");
+        let mesh = read_obj(path).and_then(|mesh| mesh.with_scheme(scheme));
         assert_eq!(
             mesh.is_err(),
             REFUSED.contains(&name.as_str()),
@@ -188,7 +195,7 @@ fn limits_agree_with_the_references_of_every_shape() {
     }
     // `obj_files` has said so when the shapes are missing; where they exist, most must have been compared.
     assert!(
-        files.is_empty() || compared >= 40,
+        files.is_empty() || compared >= 50,
         "only {compared} shapes were compared"
     );
 }

@@ -1,5 +1,6 @@
-//! Bases and their derivatives, in one dimension: a patch is the product of two. In f64 for the truth, in f32 as twins of the shaders.
+//! Bases and their derivatives: in one dimension, a quad's patch being the product of two, and of triangles. In f64 for the truth, in f32 as twins of the shaders.
 
+pub mod boxspline;
 pub mod bspline;
 pub mod crease;
 

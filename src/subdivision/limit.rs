@@ -1,6 +1,7 @@
 //! Where a vertex ends up under endless refinement, and the tangents there: left eigenvectors of the subdivision matrix.
 //!
-//! Smooth vertices: Halstead, Kass, DeRose 1993, appendix A. Creases: Biermann, Levin, Zorin 2000, appendix A. An infinitely sharp
+//! Smooth vertices: Halstead, Kass, DeRose 1993, appendix A. Creases: Biermann, Levin, Zorin 2000, appendix A. Loop's rules have the same
+//! modes around a vertex as Catmull and Clark's, without face points and with eigenvalues 3/8 + cos / 4; so one text serves both. An infinitely sharp
 //! crease that ends inside (a dart) changes the matrix of its end, and no closed form is known to us: the eigenvectors are iterated.
 
 mod corner;
@@ -12,6 +13,7 @@ use std::f64::consts::PI;
 use crate::mesh::sharpness::{Rule, is_semi_sharp, rule};
 use crate::mesh::topology::{Fan, Topology};
 use crate::subdivision::masks::Mask;
+use crate::subdivision::schemes::neighbour_weight;
 
 /// Limit position and two tangents of a vertex, as masks over the vertices of a topology.
 ///
@@ -27,8 +29,29 @@ pub struct LimitStencil {
     pub dv: Mask,
 }
 
-/// The limit at `corner` of `face`, or None while a semi-sharp feature at the vertex or a face that is no quad asks for refinement.
+/// What kind of faces surround a vertex, and so which modes there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Family {
+    /// Quads under Catmull and Clark's rules.
+    Quads,
+    /// Triangles under Loop's.
+    Triangles,
+}
+
+/// The Catmull-Clark limit at `corner` of `face`, or None while a semi-sharp feature at the vertex or a face that is no quad asks for
+/// refinement. [`vertex_limit`](crate::subdivision::vertex_limit) does the same for any scheme.
 pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<LimitStencil> {
+    family_stencil(topology, face, corner, Family::Quads)
+}
+
+/// The limit at `corner` of `face` when all faces around belong to a family and nothing is semi-sharp. Of triangles there is none at an interior
+/// vertex of valence 2, and in some non-manifold places, see [`Ring::has_mask`].
+pub(super) fn family_stencil(
+    topology: &Topology,
+    face: u32,
+    corner: u32,
+    family: Family,
+) -> Option<LimitStencil> {
     let vertex = topology.face(face)[corner as usize];
     let mut sharp = 0;
     for edge in topology.sharp_edges(vertex) {
@@ -39,11 +62,28 @@ pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<Limi
     }
     let sharpness = topology.vertex_sharpness(vertex);
     let fan = topology.fan(face, corner);
-    if is_semi_sharp(sharpness) || fan.faces.iter().any(|&face| topology.face(face).len() != 4) {
+    let arity = match family {
+        Family::Quads => 4,
+        Family::Triangles => 3,
+    };
+    if is_semi_sharp(sharpness)
+        || fan
+            .faces
+            .iter()
+            .any(|&face| topology.face(face).len() != arity)
+    {
         return None;
     }
-    let ring = Ring { topology, fan };
-    let own = match rule(sharpness, sharp) {
+    let ring = Ring {
+        topology,
+        fan,
+        family,
+    };
+    let rule = rule(sharpness, sharp);
+    if !ring.has_mask(rule) {
+        return None;
+    }
+    let own = match rule {
         Rule::Smooth if ring.fan.edges.len() == 2 => ring.valence_two(),
         Rule::Smooth => ring.smooth(),
         Rule::Crease if ring.is_page() => ring.page(),
@@ -51,7 +91,10 @@ pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<Limi
         Rule::Corner => ring.corner(),
         Rule::Dart => ring.dart(),
     };
-    Some(own.turned(corner))
+    Some(match family {
+        Family::Quads => own.turned(corner),
+        Family::Triangles => LimitStencil::of_triangle(own.position, own.du, own.dv, corner),
+    })
 }
 
 /// Which of the faces around a vertex share a tangent plane.
@@ -72,6 +115,7 @@ pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlan
     let ring = Ring {
         topology,
         fan: topology.fan(face, corner),
+        family: Family::Quads,
     };
     match rule(topology.vertex_sharpness(vertex), sharp) {
         Rule::Smooth | Rule::Dart => TangentPlane::Vertex,
@@ -81,6 +125,20 @@ pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlan
 }
 
 impl LimitStencil {
+    /// From tangents towards the next and the previous vertex of a triangle's corner to its derivatives, (0,0) being vertex 0, (1,0) vertex 1 and
+    /// (0,1) vertex 2.
+    pub(super) fn of_triangle(position: Mask, next: Mask, previous: Mask, corner: u32) -> Self {
+        let (du, dv) = match corner {
+            0 => (next, previous),
+            1 => {
+                let dv = difference(&next, &previous);
+                (negated(previous), dv)
+            }
+            _ => (difference(&previous, &next), negated(next)),
+        };
+        LimitStencil { position, du, dv }
+    }
+
     /// From the frame of a corner, whose u runs to the next vertex and v to the previous one, to that of the face.
     fn turned(self, corner: u32) -> LimitStencil {
         let LimitStencil { position, du, dv } = self;
@@ -100,23 +158,78 @@ fn negated(mask: Mask) -> Mask {
         .collect()
 }
 
-/// How much more than its faces an edge weighs in a mode of frequency `angle` around a vertex.
-fn edge_weight(angle: f64) -> f64 {
-    1.0 + angle.cos() + (angle / 2.0).cos() * (2.0 * (9.0 + angle.cos())).sqrt()
+/// a - b.
+fn difference(a: &Mask, b: &Mask) -> Mask {
+    let minus = b.iter().map(|&(vertex, weight)| (vertex, -weight));
+    a.iter().copied().chain(minus).collect()
 }
 
-/// By what a mode of frequency `angle` contracts in one refinement (Halstead, Kass, DeRose 1993, appendix A).
-fn eigenvalue(angle: f64) -> f64 {
-    (5.0 + angle.cos() + (angle / 2.0).cos() * (2.0 * (9.0 + angle.cos())).sqrt()) / 16.0
-}
-
-/// A fan of quads: its middle, the far ends of its edges and the far corners of its faces.
+/// A fan of quads or triangles: its middle, the far ends of its edges and, of quads, the far corners of its faces.
 struct Ring<'a> {
     topology: &'a Topology,
     fan: Fan,
+    family: Family,
 }
 
 impl Ring<'_> {
+    /// How much more than its faces an edge weighs in a mode of frequency `angle` around the vertex; triangles have edges alone.
+    fn edge_weight(&self, angle: f64) -> f64 {
+        match self.family {
+            Family::Quads => {
+                1.0 + angle.cos() + (angle / 2.0).cos() * (2.0 * (9.0 + angle.cos())).sqrt()
+            }
+            Family::Triangles => 1.0,
+        }
+    }
+
+    /// What a face weighs in a mode.
+    fn face_weight(&self) -> f64 {
+        match self.family {
+            Family::Quads => 1.0,
+            Family::Triangles => 0.0,
+        }
+    }
+
+    /// By what a mode of frequency `angle` contracts in one refinement (Halstead, Kass, DeRose 1993, appendix A; Loop 1987).
+    fn eigenvalue(&self, angle: f64) -> f64 {
+        match self.family {
+            Family::Quads => {
+                let root = (2.0 * (9.0 + angle.cos())).sqrt();
+                (5.0 + angle.cos() + (angle / 2.0).cos() * root) / 16.0
+            }
+            Family::Triangles => 0.375 + 0.25 * angle.cos(),
+        }
+    }
+
+    /// What a sector's mode takes from the sharp edge 0 in one step: edge 1 takes 1/16 and face 0 1/4; of triangles edge 1 takes 1/8.
+    fn fed(&self, angle: f64) -> f64 {
+        match self.family {
+            Family::Quads => (self.edge_weight(angle) / 16.0 + 0.25) * angle.sin(),
+            Family::Triangles => 0.125 * angle.sin(),
+        }
+    }
+
+    /// Scales a wave's mask so that among regular faces it is a derivative.
+    fn wave_scale(&self) -> f64 {
+        let n = self.faces() as f64;
+        match self.family {
+            Family::Quads => 1.0 / (3.0 * n),
+            Family::Triangles => 2.0 / n,
+        }
+    }
+
+    /// Whether a mask is known. Of triangles there is none where they close around an interior vertex of valence 2, and where few of
+    /// them begin and end at one and the same sharp edge: too many modes contract alike there.
+    fn has_mask(&self, rule: Rule) -> bool {
+        let (n, alike) = (self.faces(), self.is_page());
+        match (self.family, rule) {
+            (Family::Quads, _) => true,
+            (_, Rule::Smooth | Rule::Dart) => n > 2,
+            (_, Rule::Crease) => !alike || self.fan.closed && n > 2 || n > 6,
+            (_, Rule::Corner) => !alike || self.fan.closed || n > 6,
+        }
+    }
+
     fn middle(&self) -> u32 {
         self.fan.vertex
     }
@@ -132,7 +245,7 @@ impl Ring<'_> {
             .other(self.middle())
     }
 
-    /// The vertex of face i opposite to the middle.
+    /// The vertex of face i opposite to the middle, in a quad.
     fn far(&self, i: usize) -> u32 {
         let face = self.topology.face(self.fan.faces[i]);
         let corner = face
@@ -142,15 +255,22 @@ impl Ring<'_> {
         face[(corner + 2) % 4]
     }
 
-    /// Interior, no sharp edge: (n^2, 4, 1) / (n (n + 5)); the tangents belong to the double eigenvalue of frequency 1.
+    /// Interior, no sharp edge: (n^2, 4, 1) / (n (n + 5)), or (3 / (8 w), 1) / (3 / (8 w) + n) with Loop's weight w of a neighbour; the
+    /// tangents belong to the double eigenvalue of frequency 1.
     fn smooth(&self) -> LimitStencil {
         let n = self.faces();
         let count = n as f64;
-        let whole = count * (count + 5.0);
-        let mut position = Mask::from_slice(&[(self.middle(), count * count / whole)]);
+        let (own, edge, face) = match self.family {
+            Family::Quads => (count * count, 4.0, 1.0),
+            Family::Triangles => (0.375 / neighbour_weight(n), 1.0, 0.0),
+        };
+        let whole = own + count * (edge + face);
+        let mut position = Mask::from_slice(&[(self.middle(), own / whole)]);
         for i in 0..n {
-            position.push((self.end(i), 4.0 / whole));
-            position.push((self.far(i), 1.0 / whole));
+            position.push((self.end(i), edge / whole));
+            if self.family == Family::Quads {
+                position.push((self.far(i), face / whole));
+            }
         }
         let tangent =
             |towards: usize| self.harmonic(|i| (2.0 * PI * (i - towards as f64) / count).cos());
@@ -161,18 +281,24 @@ impl Ring<'_> {
         }
     }
 
-    /// The tangent mask with weight A f(i) at edge i and f(i) + f(i + 1) at face i, scaled so that n = 4 gives the derivative.
+    /// Adds weight A f(i) at edge i and, of quads, f(i) + f(i + 1) at face i.
+    fn add_wave(&self, mask: &mut Mask, angle: f64, scale: f64, f: impl Fn(f64) -> f64) {
+        let edge = self.edge_weight(angle);
+        for i in 0..self.faces() {
+            let (here, next) = (f(i as f64), f(i as f64 + 1.0));
+            mask.push((self.end(i), edge * here * scale));
+            if self.family == Family::Quads {
+                mask.push((self.far(i), (here + next) * scale));
+            }
+        }
+    }
+
+    /// The tangent mask with weight A f(i) at edge i and f(i) + f(i + 1) at face i, scaled so that n = 4 (6 triangles) gives the derivative.
     fn harmonic(&self, f: impl Fn(f64) -> f64) -> Mask {
         let n = self.faces();
         let angle = 2.0 * PI / n as f64;
-        let edge = edge_weight(angle);
-        let scale = 1.0 / (3.0 * n as f64);
         let mut mask = Mask::new();
-        for i in 0..n {
-            let (here, next) = (f(i as f64), f(i as f64 + 1.0));
-            mask.push((self.end(i), edge * here * scale));
-            mask.push((self.far(i), (here + next) * scale));
-        }
+        self.add_wave(&mut mask, angle, self.wave_scale(), f);
         mask
     }
 
@@ -232,24 +358,20 @@ impl Ring<'_> {
     }
 
     /// The sine mode of k faces beside a crease. Inside it is that of any vertex; the weight b of the crease's two ends follows from their
-    /// column of the matrix, (eigenvalue - 1/2) b = middle / 8 + sin (A / 16 + 1/4), and that of the middle from the sum of zero.
-    /// For k = 2 these are the weights (-4, -1, -1, 4, 1, 1) / 6 of the B-spline's derivative.
+    /// column of the matrix, (eigenvalue - 1/2) b = middle / 8 + fed, and that of the middle from the sum of zero.
+    /// For k = 2 quads these are the weights (-4, -1, -1, 4, 1, 1) / 6 of the B-spline's derivative.
     fn across_crease(&self, k: usize) -> Mask {
         let angle = PI / k as f64;
-        let edge = edge_weight(angle);
-        let inside = (edge + 2.0) / (angle / 2.0).tan();
-        let end = (angle.sin() * (edge + 4.0) / 16.0 - inside / 8.0) / (eigenvalue(angle) - 0.25);
-        let scale = 1.0 / (3.0 * k as f64);
+        let edge = self.edge_weight(angle);
+        let inside = (edge + 2.0 * self.face_weight()) / (angle / 2.0).tan();
+        let end = (self.fed(angle) - inside / 8.0) / (self.eigenvalue(angle) - 0.25);
+        let scale = self.wave_scale();
         let mut mask = Mask::from_slice(&[
             (self.middle(), -(2.0 * end + inside) * scale),
             (self.end(0), end * scale),
             (self.end(k), end * scale),
         ]);
-        for i in 0..k {
-            let (here, next) = ((i as f64 * angle).sin(), ((i + 1) as f64 * angle).sin());
-            mask.push((self.end(i), edge * here * scale));
-            mask.push((self.far(i), (here + next) * scale));
-        }
+        self.add_wave(&mut mask, angle, scale, |i| (i * angle).sin());
         mask
     }
 }

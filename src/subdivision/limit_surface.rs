@@ -5,13 +5,15 @@ use glam::{DVec2, DVec3};
 use crate::mesh::topology::Topology;
 use crate::mesh::{ControlMesh, Scheme};
 use crate::patch::bspline;
+use crate::subdivision::cell::SchemeCell;
 use crate::subdivision::limit::{LimitStencil, limit_stencil};
 use crate::subdivision::masks::Blend;
 use crate::subdivision::refine::{refine, with_neighbours};
 use crate::subdivision::regular::bspline_patch;
+use crate::subdivision::schemes::rings;
 
 /// A point of the limit surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LimitSample {
     /// Position, in the units of the mesh.
     pub position: DVec3,
@@ -62,7 +64,7 @@ impl LimitSurface {
     /// The limit of a mesh under a scheme that may not be its own.
     pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
         let ptex = mesh.faces().enumerate().flat_map(|(face, vertices)| {
-            let corners = if vertices.len() == 4 {
+            let corners = if scheme.is_whole(vertices.len()) {
                 1
             } else {
                 vertices.len()
@@ -101,7 +103,8 @@ impl LimitSurface {
         let uv = DVec2::new(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
         Some(match self.scheme {
             Scheme::CatmullClark => self.catmull_clark(face, corner, uv),
-            _ => self.bilinear(face, corner, uv),
+            Scheme::Bilinear => self.bilinear(face, corner, uv),
+            Scheme::Loop | Scheme::Butterfly | Scheme::LoopStam => self.by_rules(face, corner, uv),
         })
     }
 
@@ -127,6 +130,28 @@ impl LimitSurface {
             scale *= 2.0;
         }
         unreachable!("the walk ends at DEEPEST")
+    }
+
+    /// Any scheme, with its rules alone. Slower than [`LimitSurface::catmull_clark`], which refines no more than it needs.
+    fn by_rules(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
+        let triangle = self.topology.face(face).len() == 3;
+        let uv = if triangle {
+            DVec2::new(uv.x, uv.y.min(1.0 - uv.x))
+        } else {
+            uv
+        };
+        let mut faces = vec![face];
+        for _ in 0..rings(self.scheme) {
+            faces = with_neighbours(&self.topology, &faces);
+        }
+        let (topology, vertices) = self.topology.excerpt(&faces);
+        let position = |&vertex: &u32| self.positions[vertex as usize];
+        let cell = SchemeCell {
+            topology,
+            positions: vertices.iter().map(position).collect(),
+            scheme: self.scheme,
+        };
+        cell.evaluate(corner, uv)
     }
 
     fn bilinear(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
@@ -216,7 +241,7 @@ impl Cell {
     }
 }
 
-fn scaled(sample: LimitSample, scale: f64) -> LimitSample {
+pub(super) fn scaled(sample: LimitSample, scale: f64) -> LimitSample {
     LimitSample {
         du: sample.du * scale,
         dv: sample.dv * scale,
@@ -229,7 +254,7 @@ fn corner_at(uv: DVec2) -> Option<u32> {
     (exact(uv.x) && exact(uv.y)).then(|| nearest_corner(uv))
 }
 
-fn nearest_corner(uv: DVec2) -> u32 {
+pub(super) fn nearest_corner(uv: DVec2) -> u32 {
     match (uv.x < 0.5, uv.y < 0.5) {
         (true, true) => 0,
         (false, true) => 1,

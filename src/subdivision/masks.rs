@@ -38,7 +38,7 @@ impl Blend for Vec<f64> {
 }
 
 /// Adds `scale` times the mean of a face's vertices.
-fn add_face(topology: &Topology, face: u32, scale: f64, mask: &mut Mask) {
+pub(super) fn add_face(topology: &Topology, face: u32, scale: f64, mask: &mut Mask) {
     let vertices = topology.face(face);
     mask.extend(
         vertices
@@ -56,6 +56,14 @@ pub fn face_point(topology: &Topology, face: u32) -> Mask {
 
 /// The mask of an edge point.
 pub fn edge_point(topology: &Topology, edge: u32) -> Mask {
+    edge_point_with(topology, edge, add_smooth_edge)
+}
+
+/// A scheme's own rule: adds so many times its mask of an edge or a vertex.
+pub(super) type Smooth = fn(&Topology, u32, f64, &mut Mask);
+
+/// The mask of an edge point of any scheme whose sharp rule is the edge's middle.
+pub(super) fn edge_point_with(topology: &Topology, edge: u32, smooth: Smooth) -> Mask {
     let mut mask = Mask::new();
     let crease = crease_share(topology, edge);
     if crease > 0.0 {
@@ -67,7 +75,7 @@ pub fn edge_point(topology: &Topology, edge: u32) -> Mask {
         );
     }
     if crease < 1.0 {
-        add_smooth_edge(topology, edge, 1.0 - crease, &mut mask);
+        smooth(topology, edge, 1.0 - crease, &mut mask);
     }
     mask
 }
@@ -87,7 +95,7 @@ fn crease_share(topology: &Topology, edge: u32) -> f64 {
 /// (OpenSubdiv's `CATMARK_SMOOTH_TRI_EDGE_WEIGHT`).
 const SMOOTH_TRIANGLE_FACE_WEIGHT: f64 = 0.47;
 
-fn add_smooth_edge(topology: &Topology, edge: u32, scale: f64, mask: &mut Mask) {
+pub(super) fn add_smooth_edge(topology: &Topology, edge: u32, scale: f64, mask: &mut Mask) {
     let &[first, second] = topology.edge_faces(edge) else {
         // Only rims of partial topologies get here, whose points nobody asks for.
         mask.extend(
@@ -119,6 +127,11 @@ fn add_smooth_edge(topology: &Topology, edge: u32, scale: f64, mask: &mut Mask) 
 
 /// The mask of a vertex point.
 pub fn vertex_point(topology: &Topology, vertex: u32) -> Mask {
+    vertex_point_with(topology, vertex, add_smooth_vertex)
+}
+
+/// The mask of a vertex point of any scheme whose creases are cubic B-splines.
+pub(super) fn vertex_point_with(topology: &Topology, vertex: u32, smooth: Smooth) -> Mask {
     let now = topology.vertex_sharpness(vertex);
     let next = crate::mesh::sharpness::decayed(now);
     let sharp: SmallVec<[u32; 4]> = topology.sharp_edges(vertex).collect();
@@ -130,11 +143,19 @@ pub fn vertex_point(topology: &Topology, vertex: u32) -> Mask {
     let (before, after) = (rule(now, sharp.len()), rule(next, still.len()));
     let mut mask = Mask::new();
     if before == after || matches!(before, Rule::Smooth | Rule::Dart) {
-        add_vertex(topology, vertex, before, &sharp, 1.0, &mut mask);
+        add_vertex(topology, vertex, before, &sharp, 1.0, smooth, &mut mask);
     } else {
         let share = fading_share(topology, vertex, &sharp);
-        add_vertex(topology, vertex, before, &sharp, share, &mut mask);
-        add_vertex(topology, vertex, after, &still, 1.0 - share, &mut mask);
+        add_vertex(topology, vertex, before, &sharp, share, smooth, &mut mask);
+        add_vertex(
+            topology,
+            vertex,
+            after,
+            &still,
+            1.0 - share,
+            smooth,
+            &mut mask,
+        );
     }
     mask
 }
@@ -161,6 +182,7 @@ fn add_vertex(
     rule: Rule,
     sharp: &[u32],
     scale: f64,
+    smooth: Smooth,
     mask: &mut Mask,
 ) {
     match rule {
@@ -173,12 +195,12 @@ fn add_vertex(
                     .map(|&edge| (topology.edge(edge).other(vertex), 0.125 * scale)),
             );
         }
-        Rule::Smooth | Rule::Dart => add_smooth_vertex(topology, vertex, scale, mask),
+        Rule::Smooth | Rule::Dart => smooth(topology, vertex, scale, mask),
     }
 }
 
 /// Catmull and Clark's (n - 2) / n of the vertex, and 1 / n^2 of each edge's far end and each new face point.
-fn add_smooth_vertex(topology: &Topology, vertex: u32, scale: f64, mask: &mut Mask) {
+pub(super) fn add_smooth_vertex(topology: &Topology, vertex: u32, scale: f64, mask: &mut Mask) {
     let edges = topology.vertex_edges(vertex);
     let n = edges.len() as f64;
     mask.push((vertex, (n - 2.0) / n * scale));

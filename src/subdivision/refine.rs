@@ -23,7 +23,7 @@ pub struct Refinement {
 
 /// A vertex of the next level: a face, edge or vertex of this one.
 #[derive(Clone, Copy)]
-enum Origin {
+pub(super) enum Origin {
     Face(u32),
     Edge(u32),
     Vertex(u32),
@@ -199,35 +199,34 @@ impl Step<'_> {
     /// The sharpness of the child edge `a`-`b`, and what it will be at its ends: half a parent edge, or smooth.
     fn edge(&self, a: u32, b: u32) -> (f32, [f32; 2]) {
         match (self.origins[a as usize], self.origins[b as usize]) {
-            (Origin::Vertex(vertex), Origin::Edge(edge)) => self.half(edge, vertex),
+            (Origin::Vertex(vertex), Origin::Edge(edge)) => half(self.parent, edge, vertex),
             (Origin::Edge(edge), Origin::Vertex(vertex)) => {
-                let (sharpness, [near, far]) = self.half(edge, vertex);
+                let (sharpness, [near, far]) = half(self.parent, edge, vertex);
                 (sharpness, [far, near])
             }
             _ => (0.0, [0.0; 2]),
         }
     }
+}
 
-    /// The half of `edge` that ends in `vertex`: its sharpness, and next that at the vertex and at the edge's middle.
-    fn half(&self, edge: u32, vertex: u32) -> (f32, [f32; 2]) {
-        let method = self.parent.options().creasing;
-        let whole = self.parent.edge(edge);
-        let sharpness = whole.next_at(vertex);
-        if !is_sharp(sharpness) {
-            return (sharpness, [0.0; 2]);
-        }
-        let around = self.parent.vertex_edges(vertex);
-        let halves: SmallVec<[f32; 8]> = around
-            .iter()
-            .map(|&e| self.parent.edge(e).next_at(vertex))
-            .collect();
-        let at = around
-            .iter()
-            .position(|&e| e == edge)
-            .expect("the edge ends in this vertex");
-        let near = decayed_around_vertex(method, &halves)[at];
-        let far =
-            decayed_around_vertex(method, &[sharpness, whole.next_at(whole.other(vertex))])[0];
-        (sharpness, [near, far])
+/// The half of `edge` that ends in `vertex`: its sharpness, and next that at the vertex and at the edge's middle.
+pub(super) fn half(parent: &Topology, edge: u32, vertex: u32) -> (f32, [f32; 2]) {
+    let method = parent.options().creasing;
+    let whole = parent.edge(edge);
+    let sharpness = whole.next_at(vertex);
+    if !is_sharp(sharpness) {
+        return (sharpness, [0.0; 2]);
     }
+    let around = parent.vertex_edges(vertex);
+    let halves: SmallVec<[f32; 8]> = around
+        .iter()
+        .map(|&e| parent.edge(e).next_at(vertex))
+        .collect();
+    let at = around
+        .iter()
+        .position(|&e| e == edge)
+        .expect("the edge ends in this vertex");
+    let near = decayed_around_vertex(method, &halves)[at];
+    let far = decayed_around_vertex(method, &[sharpness, whole.next_at(whole.other(vertex))])[0];
+    (sharpness, [near, far])
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use super::{LimitStencil, Ring, edge_weight, eigenvalue, negated};
+use super::{Family, LimitStencil, Ring, negated};
 use crate::subdivision::masks::Mask;
 
 impl Ring<'_> {
@@ -35,6 +35,9 @@ impl Ring<'_> {
     /// 12, and the sines of mode 1.
     pub(super) fn beside_cusp(&self, along: Mask) -> Mask {
         let (k, at) = (self.faces(), self.fan.at);
+        if self.family == Family::Triangles && (k == 4 || k == 5) {
+            return self.between_sharp_edges();
+        }
         let mut mask = self.sector_mode(2);
         if k == 4 && self.fan.edges[0] == self.fan.edges[k] {
             let share = 12.0 * FRAC_1_SQRT_2 * if at == 1 { 1.0 } else { -1.0 };
@@ -45,6 +48,23 @@ impl Ring<'_> {
             );
         }
         negated(mask)
+    }
+
+    /// Of four or five triangles mode 2 is faster than the sharp edges, so these tell a face's edges apart. Edge i holds r(i) of the first sharp
+    /// edge and r(k - i) of the last, by the right eigenvectors of 1/2: r(i) = r(i - 1) + r(i + 1), r(0) = 1, r(k) = 0.
+    fn between_sharp_edges(&self) -> Mask {
+        let (k, at) = (self.faces(), self.fan.at);
+        let third = PI / 3.0;
+        let held = |i: usize| ((k - i) as f64 * third).sin() / (k as f64 * third).sin();
+        let slow = |i: usize| (i as f64 * PI / k as f64).sin();
+        let share = |end: fn(usize, usize) -> usize| {
+            slow(at) * held(end(k, at + 1)) - slow(at + 1) * held(end(k, at))
+        };
+        let mut mask = Mask::new();
+        for (edge, share) in [(0, share(|_, i| i)), (k, share(|k, i| k - i))] {
+            mask.extend([(self.end(edge), share), (self.middle(), -share)]);
+        }
+        mask
     }
 
     fn along(&self, i: usize) -> Mask {
@@ -72,7 +92,7 @@ impl Ring<'_> {
     pub(super) fn sector_mode(&self, j: usize) -> Mask {
         let k = self.faces();
         let angle = PI * j as f64 / k as f64;
-        let excess = eigenvalue(angle) - 0.5;
+        let excess = self.eigenvalue(angle) - 0.5;
         let apart = self.fan.edges[0] != self.fan.edges[k];
         let slower = excess > 1e-9;
         let mut mask = Mask::new();
@@ -85,8 +105,7 @@ impl Ring<'_> {
             );
         }
         if slower || apart {
-            // What edge 1 and face 0 take from edge 0 in one step: 1/16 and 1/4.
-            let fed = (edge_weight(angle) / 16.0 + 0.25) * angle.sin();
+            let fed = self.fed(angle);
             let far_sign = if j % 2 == 1 { 1.0 } else { -1.0 };
             for (i, sign) in [(0, 1.0), (k, far_sign)] {
                 mask.push((self.end(i), fed * sign));
@@ -100,15 +119,12 @@ impl Ring<'_> {
     fn mode(&self, angle: f64, f: impl Fn(f64) -> f64) -> Mask {
         let mut mask = Mask::new();
         for i in 0..self.faces() {
-            let (edge, face) = (
-                edge_weight(angle) * f(i as f64),
-                f(i as f64) + f(i as f64 + 1.0),
-            );
-            mask.extend([
-                (self.end(i), edge),
-                (self.far(i), face),
-                (self.middle(), -edge - face),
-            ]);
+            let edge = self.edge_weight(angle) * f(i as f64);
+            mask.extend([(self.end(i), edge), (self.middle(), -edge)]);
+            if self.family == Family::Quads {
+                let face = f(i as f64) + f(i as f64 + 1.0);
+                mask.extend([(self.far(i), face), (self.middle(), -face)]);
+            }
         }
         mask
     }

@@ -2,15 +2,19 @@
 
 use std::f64::consts::PI;
 
-use super::{LimitStencil, Ring};
+use super::{Family, LimitStencil, Ring};
 use crate::subdivision::masks::Mask;
+use crate::subdivision::schemes::neighbour_weight;
 
 impl Ring<'_> {
     /// One infinitely sharp edge ends here. The matrix is mirror-symmetric about that edge. The antisymmetric tangent is the sine of the
     /// smooth vertex, on which the edge has no part; position and symmetric tangent are iterated.
     pub(super) fn dart(&self) -> LimitStencil {
         let n = self.faces();
-        let matrix = DartMatrix { n };
+        let matrix = DartMatrix {
+            n,
+            family: self.family,
+        };
         let angle = |i: f64| 2.0 * PI * i / n as f64;
         let position = matrix.iterate(|i| f64::from(u8::from(i == 0)), false);
         let along = matrix.iterate(
@@ -63,9 +67,11 @@ impl Ring<'_> {
     }
 }
 
-/// The subdivision matrix around a dart of valence n whose edge 0 is the sharp one; vertices in the order middle, edges, faces.
+/// The subdivision matrix around a dart of valence n whose edge 0 is the sharp one; vertices in the order middle, edges, faces. Of
+/// triangles there are no faces.
 struct DartMatrix {
     n: usize,
+    family: Family,
 }
 
 impl DartMatrix {
@@ -73,7 +79,12 @@ impl DartMatrix {
     /// row that sums to zero stays so, since the matrix reproduces constants, and ends in the largest symmetric eigenvalue below 1.
     /// Rounding must not bring in the sine, whose eigenvalue is larger from valence 5 on.
     fn iterate(&self, start: impl Fn(usize) -> f64, tangent: bool) -> Vec<f64> {
-        let mut row: Vec<f64> = (0..=2 * self.n).map(start).collect();
+        let faces = if self.family == Family::Quads {
+            self.n
+        } else {
+            0
+        };
+        let mut row: Vec<f64> = (0..=self.n + faces).map(start).collect();
         // Neighbouring modes differ by about 1 / n^2, so that many steps settle the last digit; the bound is for poles of hundreds.
         for _ in 0..(200 + 40 * self.n * self.n).min(50_000) {
             let mut next = self.mirrored(&self.times(&row));
@@ -108,6 +119,32 @@ impl DartMatrix {
     }
 
     fn times(&self, row: &[f64]) -> Vec<f64> {
+        match self.family {
+            Family::Quads => self.times_quads(row),
+            Family::Triangles => self.times_triangles(row),
+        }
+    }
+
+    fn times_triangles(&self, row: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let neighbour = neighbour_weight(n);
+        let mut product = vec![0.0; n + 1];
+        product[0] += row[0] * (1.0 - n as f64 * neighbour);
+        for i in 0..n {
+            let weight = row[1 + i];
+            product[1 + i] += row[0] * neighbour;
+            let own = if i == 0 { 0.5 } else { 0.375 };
+            product[0] += own * weight;
+            product[1 + i] += own * weight;
+            if i > 0 {
+                product[i] += 0.125 * weight;
+                product[1 + (i + 1) % n] += 0.125 * weight;
+            }
+        }
+        product
+    }
+
+    fn times_quads(&self, row: &[f64]) -> Vec<f64> {
         let n = self.n;
         let (edge, face) = (|i: usize| 1 + i % n, |i: usize| 1 + n + i % n);
         let mut product = vec![0.0; 2 * n + 1];

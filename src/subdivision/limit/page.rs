@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{LimitStencil, Ring, eigenvalue};
+use super::{LimitStencil, Ring};
 use crate::subdivision::masks::Mask;
 
 impl Ring<'_> {
@@ -19,12 +19,12 @@ impl Ring<'_> {
             Mask::from_slice(&[(self.middle(), 4.0 / 6.0), (a, 1.0 / 6.0), (b, 1.0 / 6.0)]);
         let (du, dv) = if self.fan.closed {
             let (cusp, across) = self.cusp();
-            (self.moving(cusp, eigenvalue(0.0) - 0.5, true), across)
+            (self.moving(cusp, self.eigenvalue(0.0) - 0.5, true), across)
         } else {
             let back = self.end(0) == b;
             let (near, beyond) = if back { (b, a) } else { (a, b) };
             let along = Mask::from_slice(&[(near, 0.5), (beyond, -0.5)]);
-            let excess = eigenvalue(PI / k as f64) - 0.5;
+            let excess = self.eigenvalue(PI / k as f64) - 0.5;
             let slowest = if excess > 1e-9 {
                 self.moving(self.sector_mode(1), excess, false)
             } else {

@@ -1,0 +1,179 @@
+//! A face in its surroundings, refined towards a point of it, under any scheme.
+
+use glam::{DVec2, DVec3};
+
+use crate::mesh::Scheme;
+use crate::mesh::topology::Topology;
+use crate::patch::{boxspline, bspline};
+use crate::subdivision::limit::LimitStencil;
+use crate::subdivision::limit_surface::{LimitSample, nearest_corner, scaled};
+use crate::subdivision::masks::Blend;
+use crate::subdivision::regular::bspline_patch;
+use crate::subdivision::schemes::vertex_limit;
+use crate::subdivision::split::refine_child;
+use crate::subdivision::{Refinement, box_spline_patch};
+
+/// A face, number 0 of a topology with all that its limit depends on.
+pub(super) struct SchemeCell {
+    pub topology: Topology,
+    pub positions: Vec<DVec3>,
+    pub scheme: Scheme,
+}
+
+/// After so many halvings a face is flat to the last digit of an f64, while differences of its corners still have half their digits.
+const DEEPEST: u32 = 26;
+
+impl SchemeCell {
+    /// The limit at (u, v) of the face; of its ptex face at `corner` when it is neither triangle nor quad.
+    pub fn evaluate(mut self, corner: u32, mut uv: DVec2) -> LimitSample {
+        if !self.scheme.is_whole(self.topology.face(0).len()) {
+            self = self.child(corner);
+        }
+        let triangle = self.topology.face(0).len() == 3;
+        let mut scale = 1.0;
+        for depth in 0..DEEPEST {
+            if let Some(corner) = corner_at(triangle, uv) {
+                return scaled(self.limit(corner, DEEPEST - depth), scale);
+            }
+            if let Some(sample) = self.regular(uv) {
+                return scaled(sample, scale);
+            }
+            let (child, inside, turn) = descend(triangle, uv);
+            self = self.child(child);
+            uv = inside;
+            scale *= turn;
+        }
+        scaled(self.flat(uv), scale)
+    }
+
+    fn child(&self, child: u32) -> SchemeCell {
+        let Refinement {
+            topology, masks, ..
+        } = refine_child(&self.topology, self.scheme, child);
+        let blend = |mask| DVec3::blend(mask, &self.positions);
+        SchemeCell {
+            topology,
+            positions: masks.iter().map(|mask| blend(mask)).collect(),
+            scheme: self.scheme,
+        }
+    }
+
+    /// The limit at a corner. Where no mask is known after so many more refinements, the vertex and its edges there: the position's error is then
+    /// about 4^-26, that of the tangents 2^-26, or whatever else the scheme's modes contract to.
+    fn limit(&self, corner: u32, levels: u32) -> LimitSample {
+        if let Some(LimitStencil { position, du, dv }) =
+            vertex_limit(&self.topology, self.scheme, 0, corner)
+        {
+            return LimitSample {
+                position: DVec3::blend(&position, &self.positions),
+                du: DVec3::blend(&du, &self.positions),
+                dv: DVec3::blend(&dv, &self.positions),
+            };
+        }
+        if levels == 0 {
+            return self.corner(corner);
+        }
+        scaled(self.child(corner).limit(corner, levels - 1), 2.0)
+    }
+
+    /// A corner of the face itself, and the face's edges there as derivatives.
+    fn corner(&self, corner: u32) -> LimitSample {
+        let face = self.topology.face(0);
+        let points: Vec<DVec3> = face.iter().map(|&v| self.positions[v as usize]).collect();
+        let along = |from: usize, to: usize| points[to] - points[from];
+        let (du, dv) = match (face.len(), corner) {
+            (3, _) => (along(0, 1), along(0, 2)),
+            (_, 0) => (along(0, 1), along(0, 3)),
+            (_, 1) => (along(0, 1), along(1, 2)),
+            (_, 2) => (along(3, 2), along(1, 2)),
+            _ => (along(3, 2), along(0, 3)),
+        };
+        LimitSample {
+            position: points[corner as usize],
+            du,
+            dv,
+        }
+    }
+
+    /// Between the limits at the corners, linearly.
+    fn flat(&self, uv: DVec2) -> LimitSample {
+        let DVec2 { x: u, y: v } = uv;
+        let weights = match self.topology.face(0).len() {
+            3 => vec![1.0 - u - v, u, v],
+            _ => vec![(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v],
+        };
+        let mut sum = LimitSample::default();
+        for (corner, weight) in (0..).zip(weights) {
+            let sample = self.limit(corner, 0);
+            sum.position += weight * sample.position;
+            sum.du += weight * sample.du;
+            sum.dv += weight * sample.dv;
+        }
+        sum
+    }
+
+    /// The face's polynomial at (u, v), where the scheme has one.
+    fn regular(&self, uv: DVec2) -> Option<LimitSample> {
+        let mut sum = LimitSample::default();
+        let mut add = |point: DVec3, value: f64, du: f64, dv: f64| {
+            sum.position += value * point;
+            sum.du += du * point;
+            sum.dv += dv * point;
+        };
+        match self.scheme {
+            Scheme::Butterfly | Scheme::Bilinear => return None,
+            Scheme::CatmullClark | Scheme::Loop | Scheme::LoopStam => {}
+        }
+        if self.topology.face(0).len() == 3 {
+            let points = box_spline_patch(&self.topology, 0)?;
+            let basis = boxspline::basis(uv.x, uv.y);
+            for (i, mask) in points.iter().enumerate() {
+                let point = DVec3::blend(mask, &self.positions);
+                add(point, basis.value[i], basis.du[i], basis.dv[i]);
+            }
+        } else {
+            let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
+            let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
+            for (i, point) in patch.points.iter().enumerate() {
+                let point = DVec3::blend(&point.mask(), &self.positions);
+                let (x, y) = (i % 4, i / 4);
+                add(
+                    point,
+                    u.value[x] * v.value[y],
+                    u.derivative[x] * v.value[y],
+                    u.value[x] * v.derivative[y],
+                );
+            }
+        }
+        Some(sum)
+    }
+}
+
+fn corner_at(triangle: bool, uv: DVec2) -> Option<u32> {
+    match (triangle, uv.x, uv.y) {
+        (_, 0.0, 0.0) => Some(0),
+        (_, 1.0, 0.0) => Some(1),
+        (true, 0.0, 1.0) => Some(2),
+        (false, 1.0, 1.0) => Some(2),
+        (false, 0.0, 1.0) => Some(3),
+        _ => None,
+    }
+}
+
+/// The child that holds (u, v), the point's own (u, v) there, and by what the child's derivatives are to be multiplied.
+fn descend(triangle: bool, uv: DVec2) -> (u32, DVec2, f64) {
+    if !triangle {
+        let corner = nearest_corner(uv);
+        let origin = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][corner as usize];
+        return (corner, 2.0 * uv - DVec2::from(origin), 2.0);
+    }
+    if uv.x >= 0.5 {
+        (1, 2.0 * uv - DVec2::X, 2.0)
+    } else if uv.y >= 0.5 {
+        (2, 2.0 * uv - DVec2::Y, 2.0)
+    } else if uv.x + uv.y <= 0.5 {
+        (0, 2.0 * uv, 2.0)
+    } else {
+        (3, 1.0 - 2.0 * uv, -2.0)
+    }
+}

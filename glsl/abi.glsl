@@ -86,6 +86,8 @@ const uint PATCH_EVEN_EDGE = 1u;
 const uint PATCH_HALF = 16u;
 // Patch flag: where the corner of the ptex face that is corner 0 of the patch stands; two bits.
 const uint PATCH_TURN_SHIFT = 5u;
+// Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
+const uint PATCH_CREASED = 65536u;
 // Frame flag: spacing is fractional-even, else equal.
 const uint FRAME_FRACTIONAL_EVEN = 1u;
 // Frame flag: slots come from the host, else from the batch's counter.

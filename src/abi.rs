@@ -187,6 +187,9 @@ constants! {
     /// Patch flag: where the corner of the ptex face that is corner 0 of the patch stands; two bits.
     PATCH_TURN_SHIFT = 5;
 
+    /// Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
+    PATCH_CREASED = 0x1_0000;
+
     /// Frame flag: spacing is fractional-even, else equal.
     FRAME_FRACTIONAL_EVEN = 1;
     /// Frame flag: slots come from the host, else from the batch's counter.

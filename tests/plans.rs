@@ -346,7 +346,9 @@ fn a_creased_face_has_the_same_plan_however_it_is_turned() {
     let method = method("quadtree").expect("it is in the table");
     let [plain, turned] = [0, 1].map(|turn| {
         let model = Model::new(creased_sheet(turn));
-        let prepared = method.prepare(&model, PlanOptions::default()).expect("sound");
+        let prepared = method
+            .prepare(&model, PlanOptions::default())
+            .expect("sound");
         prepared.plans.expect("the method has plans").plans
     });
     assert_eq!(plain, turned);
@@ -356,7 +358,9 @@ fn a_creased_face_has_the_same_plan_however_it_is_turned() {
 fn patches_of_n_gons_are_marked_as_halves_and_their_neighbours_edges_as_even() {
     let model = Model::new(builtin("ngons").expect("a built-in shape"));
     for method in METHODS {
-        let prepared = method.prepare(&model, PlanOptions::default()).expect("sound options");
+        let prepared = method
+            .prepare(&model, PlanOptions::default())
+            .expect("sound options");
         let offsets = model.mesh().ptex_offsets();
         for patch in prepared.passes.iter().flat_map(|pass| &pass.patches) {
             let face = offsets.partition_point(|&first| first <= patch.ptex) as u32 - 1;

@@ -6,9 +6,13 @@
 mod displacement;
 mod flat;
 mod patches;
+mod phong;
+mod pn;
 mod points;
+mod qas;
 mod quadtree;
 mod surface;
+mod triangles;
 
 use glam::Vec2;
 
@@ -83,7 +87,13 @@ impl Method {
 }
 
 /// Every method.
-pub const METHODS: &[Method] = &[quadtree::METHOD, flat::METHOD];
+pub const METHODS: &[Method] = &[
+    quadtree::METHOD,
+    qas::METHOD,
+    pn::METHOD,
+    phong::METHOD,
+    flat::METHOD,
+];
 
 /// The method of a name.
 ///

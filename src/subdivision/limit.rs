@@ -10,7 +10,7 @@ mod page;
 
 use std::f64::consts::PI;
 
-use crate::mesh::sharpness::{Rule, is_semi_sharp, rule};
+use crate::mesh::sharpness::{Rule, is_infinite, is_semi_sharp, rule};
 use crate::mesh::topology::{Fan, Topology};
 use crate::subdivision::masks::Mask;
 use crate::subdivision::schemes::neighbour_weight;
@@ -122,6 +122,24 @@ pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlan
         Rule::Crease if !ring.is_page() => TangentPlane::Sector(ring.fan.faces[0]),
         Rule::Crease | Rule::Corner => TangentPlane::Face(face),
     }
+}
+
+/// The lowest face of those that share the tangent plane of the limit at `corner` of `face` with it. A semi-sharp feature has no say: it is
+/// gone in the limit.
+pub fn shared_tangent_plane(topology: &Topology, face: u32, corner: u32) -> u32 {
+    let vertex = topology.face(face)[corner as usize];
+    let infinite = topology.sharp_edges(vertex);
+    let infinite = infinite
+        .filter(|&edge| is_infinite(topology.edge(edge).sharpness))
+        .count();
+    let fan = topology.fan(face, corner);
+    let cusp = is_infinite(topology.vertex_sharpness(vertex)) || infinite > 2;
+    if cusp
+        || tangent_plane(topology, face, corner) == TangentPlane::Face(face) && fan.faces.len() == 1
+    {
+        return face;
+    }
+    fan.faces.iter().copied().min().unwrap_or(face)
 }
 
 impl LimitStencil {

@@ -37,6 +37,22 @@ impl Blend for Vec<f64> {
     }
 }
 
+impl Blend for Mask {
+    /// In the order in which vertices first appear.
+    fn blend(mask: &[(u32, f64)], values: &[Mask]) -> Mask {
+        let mut sum = Mask::new();
+        for &(value, weight) in mask {
+            for &(vertex, part) in &values[value as usize] {
+                match sum.iter_mut().find(|(known, _)| *known == vertex) {
+                    Some((_, total)) => *total += weight * part,
+                    None => sum.push((vertex, weight * part)),
+                }
+            }
+        }
+        sum
+    }
+}
+
 /// Adds `scale` times the mean of a face's vertices.
 pub(super) fn add_face(topology: &Topology, face: u32, scale: f64, mask: &mut Mask) {
     let vertices = topology.face(face);

@@ -374,7 +374,9 @@ pub const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
 /// A model made ready by the method of a name.
 pub fn prepare(model: &Model, name: &str) -> Prepared {
     let method = method(name).expect("the method is one of the table");
-    method.prepare(model, PlanOptions::default()).expect("every sound mesh can be prepared")
+    method
+        .prepare(model, PlanOptions::default())
+        .expect("every sound mesh can be prepared")
 }
 
 /// The vertices that the tessellator makes of everything.

@@ -38,7 +38,9 @@ fn hold_all(gpu: &Gpu, name: &str, model: &Model, levels: &[f32]) -> Compared {
         .collect();
     let mut compared = Compared::default();
     for method in METHODS.iter().filter(|method| method.contract.watertight) {
-        let prepared = method.prepare(model, PlanOptions::default()).expect("sound options");
+        let prepared = method
+            .prepare(model, PlanOptions::default())
+            .expect("sound options");
         let options = capturing(&prepared, &cuts);
         let workarounds = &gpu.device.info().workarounds;
         let loaded = gpu.load(model, prepared, workarounds, options);
@@ -83,7 +85,9 @@ fn displaced_surfaces_have_no_cracks() {
     let Some(gpu) = Gpu::open() else { return };
     for name in ["hull", "ngons", "creased-torus", "sheet"] {
         let model = shapes::built_in(name);
-        let prepared = METHODS[0].prepare(&model, PlanOptions::default()).expect("sound");
+        let prepared = METHODS[0]
+            .prepare(&model, PlanOptions::default())
+            .expect("sound");
         let cuts: Vec<Cut> = [3.0, 8.0]
             .iter()
             .flat_map(|&l| SPACINGS.map(|s| cut(l, s)))

@@ -12,6 +12,7 @@ use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
 use hullform::method::{Displacement, Prepared, method};
+use hullform::tessellation::Domain;
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -335,7 +336,8 @@ impl Scene<'_> {
             let controls = &controls;
             let patches = 0..pass.patches.len();
             patches.flat_map(move |patch| {
-                samples(pass.domain).map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
+                samples(pass.domain)
+                    .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
             })
         });
         self.camera

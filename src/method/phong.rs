@@ -1,0 +1,55 @@
+//! `phong`: Phong tessellation (Boubekeur, Alexa 2008). Each point of a triangle is projected onto the tangent planes of the three vertices,
+//! and moved towards the mean of the three by a share of 3/4. It needs vertex normals and nothing else.
+
+use glam::{Vec2, Vec3};
+
+use crate::error::Result;
+use crate::mesh::{Model, Scheme};
+use crate::method::surface::{Controls, SurfacePoint, normalized};
+use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
+use crate::method::{Contract, Method, Pass, Prepared, patches};
+use crate::plan::PlanOptions;
+use crate::tessellation::Domain;
+
+/// The row of the table.
+pub const METHOD: Method = Method {
+    name: "phong",
+    summary: "Phong tessellation: triangles bent towards the tangent planes of their vertices",
+    paper: "Boubekeur, Alexa 2008",
+    schemes: &[Scheme::Loop, Scheme::Butterfly],
+    domains: &[Domain::Triangles],
+    contract: Contract {
+        limit: None,
+        normals: None,
+        interpolates: true,
+        watertight: true,
+    },
+    prepare,
+};
+
+fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
+    let mut pass = Pass::new("phong", Domain::Triangles, 1, twin);
+    for part in patches::parts(model) {
+        triangles::add(&mut pass, model, part, model.topology().face(part.face), 0);
+    }
+    Ok(Prepared {
+        points: triangles::vertex_normals(model.topology()),
+        ..Prepared::of([pass])
+    })
+}
+
+/// How far points go to where the tangent planes want them; the paper's.
+const SHARE: f32 = 0.75;
+
+fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let (corners, normals): ([Vec3; 3], [Vec3; 3]) = control_points(pass, given, patch);
+    let weights = corner_weights(uv);
+    let flat = sum_of_three(weights, corners);
+    let projected =
+        std::array::from_fn(|i| flat - (flat - corners[i]).dot(normals[i]) * normals[i]);
+    let bent = sum_of_three(weights, projected);
+    SurfacePoint {
+        position: (1.0 - SHARE) * flat + SHARE * bent,
+        normal: normalized(sum_of_three(weights, normals)) + Vec3::ZERO,
+    }
+}

@@ -58,8 +58,16 @@ impl ColouredTriangles {
             indices: 3 * triangles.len() as u32,
         };
         use vk::BufferUsageFlags as Usage;
-        drawn.add_buffer("vertices", Usage::VERTEX_BUFFER, bytemuck::cast_slice(vertices))?;
-        drawn.add_buffer("indices", Usage::INDEX_BUFFER, bytemuck::cast_slice(triangles))?;
+        drawn.add_buffer(
+            "vertices",
+            Usage::VERTEX_BUFFER,
+            bytemuck::cast_slice(vertices),
+        )?;
+        drawn.add_buffer(
+            "indices",
+            Usage::INDEX_BUFFER,
+            bytemuck::cast_slice(triangles),
+        )?;
         drawn.make_pipeline(target)?;
         Ok(drawn)
     }
@@ -188,8 +196,8 @@ unsafe fn pipeline(
     let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
         .cull_mode(vk::CullModeFlags::NONE)
         .line_width(1.0);
-    let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-        .rasterization_samples(target.samples());
+    let multisample =
+        vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(target.samples());
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
         .depth_write_enable(true)

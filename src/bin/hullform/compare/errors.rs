@@ -23,7 +23,7 @@ pub enum Reference {
     /// The limit in f64.
     Truth(Box<LimitSurface>),
     /// Another method, by its twin on the CPU: it can be asked at any point, wherever its own tessellator puts vertices.
-    Method(Twin),
+    Method(Box<Twin>),
 }
 
 /// A prepared method to be asked by ptex face.
@@ -90,9 +90,7 @@ impl Known {
     /// Learns whatever points of a surface are not known yet.
     pub fn learn(&mut self, surface: &Surface, bar: &ProgressBar) {
         let keys = surface.points.iter().map(key);
-        let mut new: Vec<Key> = keys
-            .filter(|key| !self.samples.contains_key(key))
-            .collect();
+        let mut new: Vec<Key> = keys.filter(|key| !self.samples.contains_key(key)).collect();
         new.sort_unstable();
         new.dedup();
         bar.set_length(new.len() as u64);
@@ -229,7 +227,10 @@ mod tests {
         assert_eq!((summary.maximum, summary.mean), (3.0, 1.5));
         assert_eq!((summary.rms, summary.skipped), (3.0f64.sqrt(), 1));
         let nothing = Summary::new(&[None], &[1.0]);
-        assert_eq!((nothing.maximum, nothing.mean, nothing.rms), (0.0, 0.0, 0.0));
+        assert_eq!(
+            (nothing.maximum, nothing.mean, nothing.rms),
+            (0.0, 0.0, 0.0)
+        );
     }
 
     #[test]

@@ -64,6 +64,9 @@ struct Column {
     errors: Errors,
 }
 
+/// A method that can draw the model, and the number of its patches.
+type Able = (&'static Method, usize);
+
 /// A method that could not, and why.
 struct Refusal {
     name: &'static str,
@@ -84,7 +87,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let gpu = Gpu::open(global)?;
     let mut columns = Vec::new();
     for (method, patches) in able {
-        columns.push(measure(&gpu, &model, method, patches, &mut known, arguments, global)?);
+        columns.push(measure(
+            &gpu, &model, method, patches, &mut known, arguments, global,
+        )?);
     }
     let scales = scales(&columns);
     let page = progress::during("drawing", |_| {
@@ -124,7 +129,9 @@ fn against(name: &str) -> Result<Option<&'static Method>> {
 /// The same complaint about the option that has the name here.
 fn renamed(error: Error, option: &'static str, also: &str) -> Error {
     match error {
-        Error::Option { problem, remedy, .. } => Error::Option {
+        Error::Option {
+            problem, remedy, ..
+        } => Error::Option {
             option,
             problem,
             remedy: remedy + also,
@@ -134,13 +141,12 @@ fn renamed(error: Error, option: &'static str, also: &str) -> Error {
 }
 
 /// The methods that can draw the model, with the number of their patches, and those that refuse.
-fn sort_out(
-    model: &Model,
-    methods: &[&'static Method],
-) -> Result<(Vec<(&'static Method, usize)>, Vec<Refusal>)> {
+fn sort_out(model: &Model, methods: &[&'static Method]) -> Result<(Vec<Able>, Vec<Refusal>)> {
     let (mut able, mut refusals) = (Vec::new(), Vec::new());
     for &method in methods {
-        match progress::during("planning", |_| (method.prepare)(model, PlanOptions::default())) {
+        match progress::during("planning", |_| {
+            (method.prepare)(model, PlanOptions::default())
+        }) {
             Ok(prepared) => able.push((method, patches(&prepared))),
             Err(error) => {
                 tracing::warn!("{} cannot draw this model: {error}", method.name);
@@ -167,7 +173,7 @@ fn reference(model: &Model, against: Option<&'static Method>) -> Result<Referenc
         None => Reference::Truth(Box::new(LimitSurface::new(model.mesh()))),
         Some(method) => {
             let prepared = (method.prepare)(model, PlanOptions::default())?;
-            Reference::Method(Twin::new(model, prepared))
+            Reference::Method(Box::new(Twin::new(model, prepared)))
         }
     })
 }
@@ -300,10 +306,18 @@ fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> S
             .map(|number| format!("{number:<9.2e}"))
             .collect::<Vec<_>>();
         let triangles = column.surface.triangles.len();
-        let line = format!("{:16} {triangles:>10}   {}", column.name, numbers.join("  "));
+        let line = format!(
+            "{:16} {triangles:>10}   {}",
+            column.name,
+            numbers.join("  ")
+        );
         line.trim_end().to_string()
     }));
-    lines.extend(refusals.iter().map(|refusal| format!("{:16}    refused", refusal.name)));
+    lines.extend(
+        refusals
+            .iter()
+            .map(|refusal| format!("{:16}    refused", refusal.name)),
+    );
     lines.push(format!("wrote {}", arguments.output.display()));
     lines.join("\n")
 }

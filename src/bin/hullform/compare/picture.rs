@@ -128,7 +128,9 @@ fn title(page: &mut Page, arguments: &Arguments) {
         method => method,
     };
     let file = std::path::Path::new(&arguments.model).file_name();
-    let name = file.map_or(arguments.model.as_str().into(), |name| name.to_string_lossy());
+    let name = file.map_or(arguments.model.as_str().into(), |name| {
+        name.to_string_lossy()
+    });
     page.words(MARGIN, MARGIN, Face::Heading, INK, &name);
     let how = format!("tess level {}, against {against}", arguments.steps.level);
     page.words(MARGIN, MARGIN + 22, Face::Small, GREY, &how);

@@ -36,7 +36,7 @@ impl Scale {
         let greatest = maxima.iter().copied().fold(0.0, f64::max);
         let least = typical.iter().copied().fold(f64::INFINITY, f64::min);
         let high = (greatest.log10().ceil().min(308.0) as i32).max(floor + 1);
-        let low = (least.log10().floor().max(-308.0).min(308.0) as i32).clamp(floor, high - 1);
+        let low = (least.log10().floor() as i32).clamp(floor, high - 1);
         Scale { low, high }
     }
 

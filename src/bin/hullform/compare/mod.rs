@@ -30,8 +30,9 @@ use scale::Scale;
 /// What `--against` calls the limit in f64.
 const TRUTH: &str = "truth";
 
-/// Below these powers of ten only rounding is left: of f32 positions over the diagonal, and of f32 normals in degrees.
-const FLOORS: [i32; 2] = [-9, -5];
+/// The greatest range of the scales, in powers of ten, of positions over the diagonal and of normals in degrees. Below it only rounding is
+/// left; above it no angle is, and nothing that would still be recognised.
+const RANGES: [[i32; 2]; 2] = [[-9, 3], [-5, 2]];
 
 /// Options of `compare`.
 #[derive(Args)]
@@ -214,7 +215,7 @@ fn scales(columns: &[Column]) -> [Scale; 2] {
         let summaries: Vec<_> = columns.iter().map(kinds[kind]).collect();
         let means: Vec<f64> = summaries.iter().map(|summary| summary.mean).collect();
         let maxima: Vec<f64> = summaries.iter().map(|summary| summary.maximum).collect();
-        Scale::over(&means, &maxima, FLOORS[kind])
+        Scale::over(&means, &maxima, RANGES[kind])
     };
     [scale(0), scale(1)]
 }

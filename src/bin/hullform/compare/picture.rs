@@ -138,10 +138,10 @@ fn title(page: &mut Page, arguments: &Arguments) {
 
 /// As many of the numbers as a tile's width has room for.
 fn numbers(summary: &Summary, width: u32) -> String {
-    let mut words = format!("max {:.1e}", summary.maximum);
+    let mut words = format!("max {}", short(summary.maximum));
     let more = [
-        format!("  mean {:.1e}", summary.mean),
-        format!("  RMS {:.1e}", summary.rms),
+        format!("  mean {}", short(summary.mean)),
+        format!("  RMS {}", short(summary.rms)),
     ];
     for more in more {
         if Face::Small.width(&words) + Face::Small.width(&more) <= width {
@@ -149,6 +149,16 @@ fn numbers(summary: &Summary, width: u32) -> String {
         }
     }
     words
+}
+
+/// Two or three digits, with a power of ten only where one would have to count zeros.
+fn short(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        0.01..10.0 => format!("{number:.2}"),
+        10.0..1000.0 => format!("{number:.0}"),
+        _ => format!("{number:.1e}"),
+    }
 }
 
 fn legends(page: &mut Page, y: u32, columns: [u32; 2], width: u32, scales: [Scale; 2]) {
@@ -159,5 +169,16 @@ fn legends(page: &mut Page, y: u32, columns: [u32; 2], width: u32, scales: [Scal
     for ((x, title), scale) in columns.into_iter().zip(titles).zip(scales) {
         page.words(x, y, Face::Small, INK, title);
         page.bar(x, y + 20, width, scale);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let words = [0.0, 1.25e-7, 0.0125, 5.2, 180.0, 12345.0].map(short);
+        assert_eq!(words, ["0", "1.2e-7", "0.01", "5.20", "180", "1.2e4"]);
     }
 }

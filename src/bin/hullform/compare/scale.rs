@@ -26,16 +26,17 @@ pub fn colour(share: f64) -> [f64; 3] {
 pub struct Scale {
     /// The power of ten at the low end; what is less gets the same colour.
     pub low: i32,
-    /// The power of ten at the high end.
+    /// The power of ten at the high end; what is more gets the same colour.
     pub high: i32,
 }
 
 impl Scale {
-    /// The decades from the least of `typical` to the greatest of `maxima`: none below `floor`, where only rounding is left, at least one.
-    pub fn over(typical: &[f64], maxima: &[f64], floor: i32) -> Scale {
+    /// The decades from the least of `typical` to the greatest of `maxima`, at least one. None lies below `floor`, where only rounding is left,
+    /// and none above `ceiling`.
+    pub fn over(typical: &[f64], maxima: &[f64], [floor, ceiling]: [i32; 2]) -> Scale {
         let greatest = maxima.iter().copied().fold(0.0, f64::max);
         let least = typical.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = (greatest.log10().ceil().min(308.0) as i32).max(floor + 1);
+        let high = (greatest.log10().ceil() as i32).clamp(floor + 1, ceiling);
         let low = (least.log10().floor() as i32).clamp(floor, high - 1);
         Scale { low, high }
     }
@@ -66,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_scale_has_whole_decades_and_clamps() {
-        let scale = Scale::over(&[2e-8, 3e-3], &[9e-8, 2e-2], -9);
+        let scale = Scale::over(&[2e-8, 3e-3], &[9e-8, 2e-2], [-9, 3]);
         assert_eq!((scale.low, scale.high), (-8, -1));
         assert_eq!(scale.share(1e-8), 0.0);
         assert_eq!(scale.share(0.0), 0.0);
@@ -76,7 +77,10 @@ mod tests {
 
     #[test]
     fn without_any_error_there_is_still_a_scale() {
-        assert_eq!(Scale::over(&[0.0], &[0.0], -9), Scale { low: -9, high: -8 });
-        assert_eq!(Scale::over(&[], &[], -9), Scale { low: -9, high: -8 });
+        assert_eq!(
+            Scale::over(&[0.0], &[0.0], [-9, 3]),
+            Scale { low: -9, high: -8 }
+        );
+        assert_eq!(Scale::over(&[], &[], [-9, 3]), Scale { low: -9, high: -8 });
     }
 }

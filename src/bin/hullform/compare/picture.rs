@@ -155,7 +155,8 @@ fn numbers(summary: &Summary, width: u32) -> String {
 fn short(number: f64) -> String {
     match number {
         0.0 => "0".into(),
-        0.01..10.0 => format!("{number:.2}"),
+        0.01..1.0 => format!("{number:.3}"),
+        1.0..10.0 => format!("{number:.2}"),
         10.0..1000.0 => format!("{number:.0}"),
         _ => format!("{number:.1e}"),
     }
@@ -163,11 +164,13 @@ fn short(number: f64) -> String {
 
 fn legends(page: &mut Page, y: u32, columns: [u32; 2], width: u32, scales: [Scale; 2]) {
     let titles = [
-        "position error / bounding box diagonal (log scale)",
-        "normal error in degrees (log scale)",
+        "position error / diagonal, log scale",
+        "normal error in degrees, log scale",
     ];
     for ((x, title), scale) in columns.into_iter().zip(titles).zip(scales) {
-        page.words(x, y, Face::Small, INK, title);
+        let (short, _) = title.split_once(',').unwrap_or((title, ""));
+        let fits = Face::Small.width(title) <= width;
+        page.words(x, y, Face::Small, INK, if fits { title } else { short });
         page.bar(x, y + 20, width, scale);
     }
 }
@@ -178,7 +181,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let words = [0.0, 1.25e-7, 0.0125, 5.2, 180.0, 12345.0].map(short);
-        assert_eq!(words, ["0", "1.2e-7", "0.01", "5.20", "180", "1.2e4"]);
+        let words = [0.0, 1.25e-7, 0.0126, 5.2, 180.0, 12345.0].map(short);
+        assert_eq!(words, ["0", "1.2e-7", "0.013", "5.20", "180", "1.2e4"]);
     }
 }

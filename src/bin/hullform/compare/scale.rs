@@ -2,8 +2,8 @@
 
 /// Viridis as a polynomial of degree 6 in sRGB, least power first.
 ///
-/// The map is by N. Smith and S. van der Walt (matplotlib, CC0): equal steps look equal, in grey and to the colour-blind too. The fit, within
-/// a hundredth of the table, is Matt Zucker's (public domain, shadertoy.com/view/WlfXRN).
+/// The map is by N. Smith and S. van der Walt (matplotlib, CC0): equal steps look equal, in grey and to the colour-blind too. The fit, a
+/// hundredth off at the ends, is Matt Zucker's (CC0, shadertoy.com/view/WlfXRN).
 const VIRIDIS: [[f64; 3]; 7] = [
     [0.277_727_327, 0.005_407_345, 0.334_099_805],
     [0.105_093_043, 1.404_613_530, 1.384_590_163],

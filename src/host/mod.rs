@@ -1,6 +1,7 @@
 //! Instance, device and a picture to draw into, for those who have no engine.
 
 mod choice;
+mod coloured;
 mod device;
 mod instance;
 mod offscreen;
@@ -8,6 +9,7 @@ mod render_pass;
 mod statistics;
 
 pub use choice::{DeviceInfo, devices};
+pub use coloured::{ColouredTriangles, ColouredVertex};
 pub use device::Device;
 pub use instance::Instance;
 pub use offscreen::{Encoding, OffscreenTarget};

@@ -1,6 +1,8 @@
 //! The `hullform` program: subdivision surfaces from the command line.
 
 mod camera;
+mod capture;
+mod compare;
 mod devices;
 mod drawing;
 mod gpu;
@@ -37,6 +39,8 @@ enum Command {
     Render(render::Arguments),
     /// Write the tessellated surface as points or triangles
     Tessellate(tessellate::Arguments),
+    /// Draw methods side by side, with maps of their errors
+    Compare(compare::Arguments),
     /// Tell how the faces of a model are planned
     Plan(plan::Arguments),
     /// List the Vulkan devices and how they suit us
@@ -52,6 +56,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, global),
         Command::Tessellate(arguments) => tessellate::run(arguments, global),
+        Command::Compare(arguments) => compare::run(arguments, global),
         Command::Plan(arguments) => plan::run(arguments, global),
         Command::Devices => devices::run(global),
         Command::Verify(arguments) => verify::run(arguments, global),

@@ -1,5 +1,6 @@
 //! Options that several subcommands share, and how their values are read.
 
+use crate::camera::Camera;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -106,6 +107,13 @@ pub struct Cut {
     /// Surface method
     #[arg(long, value_name = "NAME", default_value = "quadtree")]
     pub method: String,
+    #[command(flatten)]
+    steps: Steps,
+}
+
+/// How finely: options of whatever tessellates.
+#[derive(Args)]
+pub struct Steps {
     /// Tessellation level, 1 to 64
     #[arg(long, default_value = "8", value_parser = level)]
     pub level: f32,
@@ -117,11 +125,31 @@ pub struct Cut {
 impl Cut {
     /// As the library takes it.
     pub fn cut(&self) -> hullform::gpu::Cut {
+        self.steps.cut()
+    }
+}
+
+impl Steps {
+    /// As the library takes it.
+    pub fn cut(&self) -> hullform::gpu::Cut {
         hullform::gpu::Cut {
             level: self.level,
             spacing: self.spacing.into(),
         }
     }
+}
+
+/// Where a picture is taken from: an option of whatever draws.
+#[derive(Args)]
+pub struct Sight {
+    /// Angles in degrees and a zoom
+    #[arg(
+        long,
+        value_name = "YAW,PITCH,ZOOM",
+        default_value = "40,22,1",
+        allow_hyphen_values = true
+    )]
+    pub camera: Camera,
 }
 
 /// Width and height of a picture.

@@ -23,7 +23,7 @@ const SAMPLES: u32 = 4;
 /// Pixels are drawn as squares of so many, where the device's limits allow, and averaged.
 const SUPERSAMPLING: u32 = 2;
 /// Nothing: the background comes when the picture is composed.
-const CLEAR: [f32; 4] = [0.0; 4];
+pub const CLEAR: [f32; 4] = [0.0; 4];
 
 /// Options of `render`.
 #[derive(Args)]
@@ -44,14 +44,8 @@ pub struct Arguments {
     /// Draw the edges of the triangles over the surface
     #[arg(long)]
     wireframe: bool,
-    /// Angles in degrees and a zoom
-    #[arg(
-        long,
-        value_name = "YAW,PITCH,ZOOM",
-        default_value = "40,22,1",
-        allow_hyphen_values = true
-    )]
-    camera: Camera,
+    #[command(flatten)]
+    sight: options::Sight,
     /// Displace the surface along its normal by bumps of this height, as a share of the model's diagonal
     #[arg(long, value_name = "AMOUNT", default_value = "0", value_parser = options::share, allow_hyphen_values = true)]
     displace: f32,
@@ -80,14 +74,21 @@ struct Scene<'a> {
     model: &'a Model,
     method: &'a str,
     cut: Cut,
-    camera: Camera,
-    aspect: f32,
+    sight: Sight,
     shading: Shading,
     displacement: Displacement,
     wireframe: bool,
     ring_bytes: u64,
     slots: Slots,
     load_seconds: f64,
+}
+
+/// Where a scene is seen from.
+enum Sight {
+    /// From where the camera sees all of the surface, in a picture of this aspect.
+    Framed(Camera, f32),
+    /// From a given place.
+    Given(View),
 }
 
 /// Draws the model and writes picture and statistics.
@@ -128,23 +129,12 @@ fn draw_picture(
             remedy: "choose another device or leave it out".into(),
         });
     }
-    let widest = gpu
-        .device
-        .limits()
-        .max_framebuffer_width
-        .min(gpu.device.limits().max_framebuffer_height);
-    let factor = if width.max(height) <= widest / SUPERSAMPLING {
-        SUPERSAMPLING
-    } else {
-        1
-    };
-    let target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
+    let (target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
         method: &arguments.cut.method,
         cut: arguments.cut.cut(),
-        camera: arguments.camera,
-        aspect: width as f32 / height as f32,
+        sight: Sight::Framed(arguments.sight.camera, width as f32 / height as f32),
         shading: arguments.shading,
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
@@ -157,6 +147,46 @@ fn draw_picture(
         picture::compose(&target.read_pixels(), width, height, factor),
         stats,
     ))
+}
+
+/// A target for a picture, and the factor by which it is larger.
+pub fn target(gpu: &Gpu, width: u32, height: u32) -> Result<(OffscreenTarget, u32)> {
+    let limits = gpu.device.limits();
+    let widest = limits
+        .max_framebuffer_width
+        .min(limits.max_framebuffer_height);
+    let factor = if width.max(height) <= widest / SUPERSAMPLING {
+        SUPERSAMPLING
+    } else {
+        1
+    };
+    let target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
+    Ok((target, factor))
+}
+
+/// Draws a model lit, by a method, as seen in `view`.
+pub fn draw_lit(
+    gpu: &Gpu,
+    target: &OffscreenTarget,
+    model: &Model,
+    method: &str,
+    cut: Cut,
+    view: View,
+    global: &Global,
+) -> Result<()> {
+    let scene = Scene {
+        model,
+        method,
+        cut,
+        sight: Sight::Given(view),
+        shading: Shading::Lit,
+        displacement: Displacement::default(),
+        wireframe: false,
+        ring_bytes: global.ring_bytes,
+        slots: Drawing::slots(global.slots),
+        load_seconds: 0.0,
+    };
+    draw(gpu, target, &scene).map(drop)
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
@@ -327,6 +357,10 @@ fn statistics(
 impl Scene<'_> {
     /// Frames the surface itself: the control mesh may reach far beyond it.
     fn frame(&self, prepared: &Prepared) -> View {
+        let (camera, aspect) = match self.sight {
+            Sight::Framed(camera, aspect) => (camera, aspect),
+            Sight::Given(view) => return view,
+        };
         let controls = prepared.controls(self.model.positions());
         let samples = |domain| match domain {
             Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
@@ -340,8 +374,7 @@ impl Scene<'_> {
                     .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
             })
         });
-        self.camera
-            .frame(&points.collect::<Vec<Vec3>>(), self.aspect)
+        camera.frame(&points.collect::<Vec<Vec3>>(), aspect)
     }
 }
 

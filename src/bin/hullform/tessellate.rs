@@ -1,18 +1,14 @@
 //! `hullform tessellate`: the surface as points or triangles.
 
-use crate::drawing::Drawing;
+use crate::capture::capture;
 use crate::gpu::Gpu;
 use crate::options::{self, Global};
-use crate::output::{Format, Pending, Point, Surface, csv, obj, ply};
+use crate::output::{Format, Pending, Surface, csv, obj, ply};
 use crate::{model, print, progress};
 use clap::Args;
-use glam::Vec3;
-use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
-use hullform::host::OffscreenTarget;
+use hullform::Result;
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Pass, method, to_ptex};
-use hullform::tessellation::triangulate;
-use hullform::{Error, Result, abi};
+use hullform::method::method;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -35,7 +31,10 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let model = Model::new(model::load(Some(&arguments.model))?);
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
-    let surface = progress::during("tessellating", |_| capture(&gpu, &model, arguments, global))?;
+    let surface = progress::during("tessellating", |_| {
+        let (method, cut) = (&arguments.cut.method, arguments.cut.cut());
+        capture(&gpu, &model, method, cut, global)
+    })?;
     gpu.finish()?;
     progress::during("writing", |_| {
         file.write(|out| match format {
@@ -56,116 +55,5 @@ fn report(arguments: &Arguments, global: &Global, surface: &Surface) -> Result<(
         print(&format!("{report:#}"))
     } else {
         print(&format!("{path}: {points} points, {triangles} triangles"))
-    }
-}
-
-/// Vertices that are captured at once: as many as 64 MiB hold.
-const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
-
-/// Tessellates `model` on the device, some patches at a time, and gathers what the evaluation shader produced.
-fn capture(gpu: &Gpu, model: &Model, arguments: &Arguments, global: &Global) -> Result<Surface> {
-    let cut = arguments.cut.cut();
-    let options = SurfaceOptions {
-        ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
-        capture_vertices: CAPTURED,
-        greatest_level: cut.level,
-        ..Default::default()
-    };
-    let mut drawing = Drawing::new(gpu, model, &arguments.cut.method, options)?;
-    drawing.upload()?;
-    // Nothing is rasterised, but draws need a render pass.
-    let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
-    let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;
-    let batches = drawing.surface().batches(cut)?;
-    drawing.write_slots(cut, &batches);
-    let mut surface = Surface::default();
-    let captured = batches.iter().try_for_each(|batch| {
-        let captured = capture_batch(gpu, &drawing, &target, &pipelines, cut, batch)?;
-        add_patches(
-            &mut surface,
-            &captured,
-            model,
-            &drawing.surface().prepared().passes[batch.pass],
-        );
-        Ok(())
-    });
-    // SAFETY: every submission has been waited for.
-    unsafe { pipelines.destroy(gpu.device.raw()) };
-    captured.map(|()| surface)
-}
-
-/// Draws a batch and returns what was captured, patch by patch.
-fn capture_batch(
-    gpu: &Gpu,
-    drawing: &Drawing<'_>,
-    target: &OffscreenTarget,
-    pipelines: &Pipelines,
-    cut: Cut,
-    batch: &Batch,
-) -> Result<Vec<abi::Captured>> {
-    let view = View {
-        clip_from_model: [[0.0; 4]; 4],
-        eye: [0.0; 3],
-        shading: abi::SHADING_LIT,
-        displacement: Displacement::default(),
-    };
-    // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-    gpu.device.submit(|cmd| unsafe {
-        drawing.surface().cmd_prepare(gpu.device.raw(), cmd);
-        target.begin(cmd, [0.0; 4]);
-        drawing.cmd_draw(cmd, pipelines, &view, cut, std::slice::from_ref(batch));
-        target.end(cmd);
-        drawing.surface().cmd_read_back(gpu.device.raw(), cmd);
-        Ok(())
-    })?;
-    let overflows = drawing.counters().overflows;
-    if overflows > 0 {
-        return Err(Error::Refused(format!(
-            "{overflows} patches found no room in the scratch ring; use --slots host, or a larger --ring-bytes"
-        )));
-    }
-    Ok(once_each(drawing.surface().captured(), batch.vertices))
-}
-
-/// The captured vertices by patch, v and u, each once: an evaluation shader may run more than once a vertex.
-fn once_each(captured: &[abi::Captured], expected: u32) -> Vec<abi::Captured> {
-    let mut vertices = captured.to_vec();
-    let key = |vertex: &abi::Captured| {
-        (
-            vertex.patch_number,
-            vertex.uv[1].to_bits(),
-            vertex.uv[0].to_bits(),
-        )
-    };
-    vertices.sort_unstable_by_key(key);
-    vertices.dedup_by_key(|vertex| key(vertex));
-    if vertices.len() != expected as usize {
-        tracing::warn!(
-            "the device made {} vertices where {expected} were expected",
-            vertices.len()
-        );
-    }
-    vertices
-}
-
-/// Adds the points and triangles of captured patches.
-fn add_patches(surface: &mut Surface, captured: &[abi::Captured], model: &Model, pass: &Pass) {
-    for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {
-        let number = vertices[0].patch_number as usize;
-        let patch = &pass.patches[number];
-        let first = surface.points.len() as u32;
-        let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
-        let triangles = triangulate(pass.domain, &uv)
-            .into_iter()
-            .map(|triangle| triangle.map(|i| first + i));
-        surface.triangles.extend(triangles);
-        surface.points.extend(vertices.iter().map(|vertex| Point {
-            face: patch.ptex,
-            uv: to_ptex(patch, vertex.uv),
-            position: (Vec3::from(vertex.position).as_dvec3() + model.centre()).to_array(),
-            normal: vertex.normal,
-            texture: pass.texture_coordinates(number, vertex.uv),
-        }));
     }
 }

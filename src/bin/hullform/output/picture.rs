@@ -8,7 +8,7 @@ const BACKGROUND: [[f32; 3]; 2] = [[0.62, 0.66, 0.70], [0.30, 0.32, 0.35]];
 /// `drawn` is sRGB with alpha, `width` x `height` x factor^2 pixels, its colours already weighted with alpha, as a transparent clear colour
 /// and resolved samples leave them. Returns RGBA.
 pub fn compose(drawn: &[u8], width: u32, height: u32, factor: u32) -> Vec<u8> {
-    let linear: Vec<f32> = (0..=255u8).map(to_linear).collect();
+    let linear: Vec<f32> = (0..=255u8).map(byte_to_linear).collect();
     let (width, height, factor) = (width as usize, height as usize, factor as usize);
     let share = 1.0 / (factor * factor) as f32;
     let mut picture = Vec::with_capacity(4 * width * height);
@@ -36,9 +36,13 @@ pub fn compose(drawn: &[u8], width: u32, height: u32, factor: u32) -> Vec<u8> {
     picture
 }
 
+/// A byte in linear light.
+fn byte_to_linear(byte: u8) -> f32 {
+    to_linear(f32::from(byte) / 255.0)
+}
+
 /// The sRGB transfer function (IEC 61966-2-1).
-fn to_linear(byte: u8) -> f32 {
-    let x = f32::from(byte) / 255.0;
+pub fn to_linear(x: f32) -> f32 {
     if x <= 0.04045 {
         x / 12.92
     } else {
@@ -62,7 +66,7 @@ mod tests {
 
     #[test]
     fn every_byte_survives_the_way_to_linear_and_back() {
-        assert!((0..=255).all(|byte| to_srgb(to_linear(byte)) == byte));
+        assert!((0..=255).all(|byte| to_srgb(byte_to_linear(byte)) == byte));
     }
 
     #[test]

@@ -1,0 +1,13 @@
+#version 460
+
+// Triangles that the host has already projected and coloured: maps of a number over a surface.
+
+layout(location = 0) in vec4 in_clip;
+layout(location = 1) in vec4 in_colour;
+
+layout(location = 0) out vec4 out_colour;
+
+void main() {
+    gl_Position = in_clip;
+    out_colour = in_colour;
+}

@@ -1,0 +1,324 @@
+//! `hullform compare`: methods side by side, with maps of their errors.
+
+mod errors;
+mod page;
+mod picture;
+mod scale;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::Vec3;
+use hullform::gpu::Cut;
+use hullform::mesh::Model;
+use hullform::method::{METHODS, Method, Prepared, method};
+use hullform::plan::PlanOptions;
+use hullform::subdivision::LimitSurface;
+use hullform::{Error, Result};
+use serde_json::{Value, json};
+
+use crate::camera::View;
+use crate::capture::capture;
+use crate::gpu::Gpu;
+use crate::options::{self, Global, Size};
+use crate::output::{Format, Pending, Surface, picture as composed, png};
+use crate::{model, print, progress, render};
+use errors::{Errors, Known, Reference, Twin};
+use page::Page;
+use scale::Scale;
+
+/// What `--against` calls the limit in f64.
+const TRUTH: &str = "truth";
+
+/// The greatest range of the scales, in powers of ten, of positions over the diagonal and of normals in degrees. Below it only rounding is
+/// left; above it no angle is, and nothing that would still be recognised.
+const RANGES: [[i32; 2]; 2] = [[-9, 3], [-5, 2]];
+
+/// Options of `compare`.
+#[derive(Args)]
+pub struct Arguments {
+    /// OBJ file, or builtin:NAME
+    model: String,
+    /// Methods, from the top of the picture [default: all that can draw the model]
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    methods: Vec<String>,
+    /// What to measure errors against: `truth`, the limit in f64, or a method
+    #[arg(long, value_name = "NAME", default_value = TRUTH)]
+    against: String,
+    /// Picture to write
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    #[command(flatten)]
+    steps: options::Steps,
+    /// Size in pixels of each of the three pictures of a method
+    #[arg(long, value_name = "WxH", default_value = "480x360")]
+    size: Size,
+    #[command(flatten)]
+    sight: options::Sight,
+}
+
+/// A method that could draw the model: what it made, and how far off that is.
+struct Column {
+    name: &'static str,
+    patches: usize,
+    surface: Surface,
+    errors: Errors,
+}
+
+/// A method that can draw the model, and the number of its patches.
+type Able = (&'static Method, usize);
+
+/// A method that could not, and why.
+struct Refusal {
+    name: &'static str,
+    reason: String,
+}
+
+/// Compares, and writes picture and numbers.
+///
+/// The picture comes last: what the validation layer complained about is not written.
+pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    Format::of(&arguments.output, &[Format::Png])?;
+    let asked = asked(&arguments.methods)?;
+    let against = against(&arguments.against)?;
+    let model = Model::new(model::load(Some(&arguments.model))?);
+    let file = Pending::create(&arguments.output)?;
+    let (able, refusals) = sort_out(&model, &asked)?;
+    let mut known = Known::new(reference(&model, against)?);
+    let gpu = Gpu::open(global)?;
+    let mut columns = Vec::new();
+    for (method, patches) in able {
+        columns.push(measure(
+            &gpu, &model, method, patches, &mut known, arguments, global,
+        )?);
+    }
+    let scales = scales(&columns);
+    let page = progress::during("drawing", |_| {
+        draw(&gpu, &model, &columns, &refusals, scales, arguments, global)
+    })?;
+    gpu.finish()?;
+    file.write(|out| png::write(out, page.width, page.height, &page.pixels))?;
+    report(arguments, global, &columns, &refusals)
+}
+
+/// The methods of `--methods`, each once; all of them if none is named.
+fn asked(names: &[String]) -> Result<Vec<&'static Method>> {
+    if names.is_empty() {
+        return Ok(METHODS.iter().collect());
+    }
+    let mut methods: Vec<&'static Method> = Vec::new();
+    for name in names {
+        let method = method(name).map_err(|error| renamed(error, "--methods", ""))?;
+        if !methods.iter().any(|other| other.name == method.name) {
+            methods.push(method);
+        }
+    }
+    Ok(methods)
+}
+
+/// The method of `--against`; None for the truth.
+fn against(name: &str) -> Result<Option<&'static Method>> {
+    if name == TRUTH {
+        return Ok(None);
+    }
+    let also = format!(", or {TRUTH}");
+    method(name)
+        .map(Some)
+        .map_err(|error| renamed(error, "--against", &also))
+}
+
+/// The same complaint about the option that has the name here.
+fn renamed(error: Error, option: &'static str, also: &str) -> Error {
+    match error {
+        Error::Option {
+            problem, remedy, ..
+        } => Error::Option {
+            option,
+            problem,
+            remedy: remedy + also,
+        },
+        other => other,
+    }
+}
+
+/// The methods that can draw the model, with the number of their patches, and those that refuse.
+fn sort_out(model: &Model, methods: &[&'static Method]) -> Result<(Vec<Able>, Vec<Refusal>)> {
+    let (mut able, mut refusals) = (Vec::new(), Vec::new());
+    for &method in methods {
+        match progress::during("planning", |_| {
+            method.prepare(model, PlanOptions::default())
+        }) {
+            Ok(prepared) => able.push((method, patches(&prepared))),
+            Err(error) => {
+                tracing::warn!("{} cannot draw this model: {error}", method.name);
+                refusals.push(Refusal {
+                    name: method.name,
+                    reason: error.to_string(),
+                });
+                if refusals.len() == methods.len() {
+                    // With the exit code of the last refusal.
+                    return Err(error);
+                }
+            }
+        }
+    }
+    Ok((able, refusals))
+}
+
+fn patches(prepared: &Prepared) -> usize {
+    prepared.passes.iter().map(|pass| pass.patches.len()).sum()
+}
+
+fn reference(model: &Model, against: Option<&'static Method>) -> Result<Reference> {
+    Ok(match against {
+        None => Reference::Truth(Box::new(LimitSurface::new(model.mesh()))),
+        Some(method) => {
+            let prepared = method.prepare(model, PlanOptions::default())?;
+            Reference::Method(Box::new(Twin::new(model, prepared)))
+        }
+    })
+}
+
+/// Captures what a method makes of the model and compares it.
+fn measure(
+    gpu: &Gpu,
+    model: &Model,
+    method: &'static Method,
+    patches: usize,
+    known: &mut Known,
+    arguments: &Arguments,
+    global: &Global,
+) -> Result<Column> {
+    let cut = arguments.steps.cut();
+    let surface = progress::during("tessellating", |_| {
+        capture(gpu, model, method.name, cut, global)
+    })?;
+    progress::during("evaluating the reference", |bar| known.learn(&surface, bar));
+    Ok(Column {
+        name: method.name,
+        patches,
+        errors: Errors::new(&surface, known, diagonal(model)),
+        surface,
+    })
+}
+
+/// The diagonal of the bounding box; a model without extent has only errors of nothing.
+fn diagonal(model: &Model) -> f64 {
+    let (low, high) = model.mesh().bounds();
+    low.distance(high).max(f64::MIN_POSITIVE)
+}
+
+/// The scales of positions and normals, one for all methods so that they compare.
+fn scales(columns: &[Column]) -> [Scale; 2] {
+    let kinds: [fn(&Column) -> errors::Summary; 2] = [|c| c.errors.position, |c| c.errors.normal];
+    let scale = |kind: usize| {
+        let summaries: Vec<_> = columns.iter().map(kinds[kind]).collect();
+        let means: Vec<f64> = summaries.iter().map(|summary| summary.mean).collect();
+        let maxima: Vec<f64> = summaries.iter().map(|summary| summary.maximum).collect();
+        Scale::over(&means, &maxima, RANGES[kind])
+    };
+    [scale(0), scale(1)]
+}
+
+fn draw(
+    gpu: &Gpu,
+    model: &Model,
+    columns: &[Column],
+    refusals: &[Refusal],
+    scales: [Scale; 2],
+    arguments: &Arguments,
+    global: &Global,
+) -> Result<Page> {
+    let Size { width, height } = arguments.size;
+    let (target, factor) = render::target(gpu, width, height)?;
+    let cut: Cut = arguments.steps.cut();
+    let view = view(model, columns, arguments);
+    let finish = || composed::compose(&target.read_pixels(), width, height, factor);
+    let mut rows = Vec::new();
+    for column in columns {
+        render::draw_lit(gpu, &target, model, column.name, cut, view, global)?;
+        let lit = finish();
+        let mut tiles = vec![lit];
+        let maps = [&column.errors.positions, &column.errors.normals];
+        for (errors, scale) in maps.into_iter().zip(scales) {
+            picture::draw_map(gpu, &target, model, &column.surface, errors, scale, &view)?;
+            tiles.push(finish());
+        }
+        rows.push((column, tiles));
+    }
+    Ok(picture::lay_out(arguments, &rows, refusals, scales))
+}
+
+/// One view for all, which has all that any method draws in it.
+fn view(model: &Model, columns: &[Column], arguments: &Arguments) -> View {
+    let points = columns.iter().flat_map(|column| &column.surface.points);
+    let points = points.map(|point| picture::local(model, point));
+    let Size { width, height } = arguments.size;
+    let aspect = width as f32 / height as f32;
+    let points: Vec<Vec3> = points.collect();
+    arguments.sight.camera.frame(&points, aspect)
+}
+
+fn report(
+    arguments: &Arguments,
+    global: &Global,
+    columns: &[Column],
+    refusals: &[Refusal],
+) -> Result<()> {
+    if !global.prints_json() {
+        return print(&as_text(arguments, columns, refusals));
+    }
+    let methods: Vec<Value> = columns.iter().map(facts).collect();
+    let refused = refusals
+        .iter()
+        .map(|refusal| json!({ "method": refusal.name, "reason": refusal.reason }));
+    let report = json!({
+        "output": arguments.output.display().to_string(),
+        "model": arguments.model,
+        "against": arguments.against,
+        "level": arguments.steps.level,
+        "methods": methods,
+        "refused": refused.collect::<Vec<_>>(),
+    });
+    print(&format!("{report:#}"))
+}
+
+fn facts(column: &Column) -> Value {
+    json!({
+        "method": column.name,
+        "triangles": column.surface.triangles.len(),
+        "patches": column.patches,
+        "vertices": column.surface.points.len(),
+        "position_error": column.errors.position.json(),
+        "normal_error_degrees": column.errors.normal.json(),
+    })
+}
+
+/// A line a method.
+fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> String {
+    let mut lines = vec![format!(
+        "{:16} {:>10}   position error / diagonal        normal error, degrees\n{:16} {:>10}   maximum    mean       RMS        maximum    mean       RMS",
+        "", "", "method", "triangles"
+    )];
+    lines.extend(columns.iter().map(|column| {
+        let numbers = [column.errors.position, column.errors.normal]
+            .iter()
+            .flat_map(|summary| [summary.maximum, summary.mean, summary.rms])
+            .map(|number| format!("{number:<9.2e}"))
+            .collect::<Vec<_>>();
+        let triangles = column.surface.triangles.len();
+        let line = format!(
+            "{:16} {triangles:>10}   {}",
+            column.name,
+            numbers.join("  ")
+        );
+        line.trim_end().to_string()
+    }));
+    lines.extend(
+        refusals
+            .iter()
+            .map(|refusal| format!("{:16}    refused", refusal.name)),
+    );
+    lines.push(format!("wrote {}", arguments.output.display()));
+    lines.join("\n")
+}

@@ -177,3 +177,92 @@ fn descend(triangle: bool, uv: DVec2) -> (u32, DVec2, f64) {
         (3, 1.0 - 2.0 * uv, -2.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{ControlMesh, INFINITE_SHARPNESS};
+
+    /// Triangles around vertex 0, and around all but the rim another ring, so that the fan's far edges are smooth.
+    fn fan(n: usize, closed: bool, creases: &[usize], sharp: bool) -> Topology {
+        let count = if closed { n } else { n + 1 } as u32;
+        let (inner, outer) = (|i: u32| 1 + i % count, |i: u32| 1 + count + i % count);
+        let mut faces = Vec::new();
+        for i in 0..n as u32 {
+            faces.extend([0, inner(i), inner(i + 1)]);
+            faces.extend([inner(i), outer(i), outer(i + 1)]);
+            faces.extend([inner(i), outer(i + 1), inner(i + 1)]);
+        }
+        let positions = vec![[0.0; 3]; 1 + 2 * count as usize];
+        let mut builder = ControlMesh::builder(&positions, &vec![3; faces.len() / 3], &faces)
+            .scheme(Scheme::Loop);
+        for &edge in creases {
+            builder = builder.crease(0, inner(edge as u32), INFINITE_SHARPNESS);
+        }
+        if sharp {
+            builder = builder.corner(0, INFINITE_SHARPNESS);
+        }
+        Topology::new(&builder.build().expect("a sound fan"))
+    }
+
+    /// The number `i` of a sequence without pattern, in -1..1.
+    fn scatter(i: usize) -> f64 {
+        2.0 * (i as f64 * 0.618_033_988_749_895 + 0.271).fract() - 1.0
+    }
+
+    /// The face in a surface that rises and falls above a disc.
+    fn cell(topology: &Topology, face: u32) -> SchemeCell {
+        let faces = crate::subdivision::refine::with_neighbours(topology, &[face]);
+        let (topology, vertices) = topology.excerpt(&faces);
+        let position = |&v: &u32| {
+            let i = v as usize;
+            DVec3::new(scatter(7 * i), scatter(7 * i + 3), scatter(11 * i + 5))
+        };
+        SchemeCell {
+            topology,
+            positions: vertices.iter().map(position).collect(),
+            scheme: Scheme::Loop,
+        }
+    }
+
+    /// Distance of the positions and angle of the normals of a mask at corner 0 and of so many refinements.
+    fn apart(mut cell: SchemeCell, levels: u32) -> (f64, f64) {
+        let mask = cell.limit(0, 0);
+        assert!(vertex_limit(&cell.topology, Scheme::Loop, 0, 0).is_some());
+        for _ in 0..levels {
+            cell = cell.child(0);
+        }
+        let refined = cell.corner(0);
+        (
+            mask.position.distance(refined.position),
+            mask.normal().angle_between(refined.normal()),
+        )
+    }
+
+    #[test]
+    fn masks_among_triangles_are_what_refinement_leads_to() {
+        for n in 1..=9 {
+            let mut kinds = vec![
+                ("crease", fan(n, false, &[], false), 0.01),
+                // Sharp edges and the slowest wave contract almost alike, of three triangles exactly.
+                ("corner", fan(n, false, &[], true), 0.15),
+            ];
+            if n > 2 {
+                kinds.extend([
+                    ("smooth", fan(n, true, &[], false), 0.01),
+                    ("dart", fan(n, true, &[0], false), 0.01),
+                    ("sharp vertex", fan(n, true, &[], true), 0.01),
+                    ("crease through", fan(n, true, &[0, n / 2], false), 0.01),
+                ]);
+            }
+            for (kind, topology, bound) in kinds {
+                for face in 0..n as u32 {
+                    let (distance, angle) = apart(cell(&topology, 3 * face), 16);
+                    let place = format!("{kind}, {n} triangles, number {face}");
+                    assert!(distance < 1e-8, "{place}: {distance:e} off");
+                    assert!(angle < bound, "{place}: {angle} radians");
+                }
+            }
+        }
+    }
+}

@@ -233,6 +233,9 @@ mod tests {
         let (topology, vertices) = topology.excerpt(&faces);
         let position = |&v: &u32| {
             let i = v as usize;
+            if v == 0 {
+                return DVec3::ZERO;
+            }
             DVec3::new(scatter(3 * i), scatter(3 * i + 1), scatter(3 * i + 2))
         };
         SchemeCell {
@@ -242,13 +245,13 @@ mod tests {
         }
     }
 
-    /// Distance of the positions and angle of the normals of a mask at corner 0 and of refinement. Sixteen levels show the normal: of more, rounding
+    /// Distance of the positions and angle of the normals of a mask at corner 0 and of refinement. Elsewhere than at sharp vertices sixteen levels show the normal: of more, rounding
     /// would be all that is left of what contracts by 1/4.
-    fn apart(mut cell: SchemeCell) -> (f64, f64) {
+    fn apart(mut cell: SchemeCell, levels: u32) -> (f64, f64) {
         let mask = cell.limit(0, 0);
         assert!(vertex_limit(&cell.topology, Scheme::Loop, 0, 0).is_some());
         let position = cell.settled(0);
-        for _ in 0..16 {
+        for _ in 0..levels {
             cell = cell.child(0);
         }
         (
@@ -274,8 +277,10 @@ mod tests {
                 ]);
             }
             for (kind, topology, bound) in kinds {
+                // A corner stays at the origin, so nothing is lost however near its neighbours come.
+                let levels = if kind == "corner" { 60 } else { 16 };
                 for face in 0..n as u32 {
-                    let (distance, angle) = apart(cell(&topology, 3 * face));
+                    let (distance, angle) = apart(cell(&topology, 3 * face), levels);
                     let place = format!("{kind}, {n} triangles, number {face}");
                     assert!(distance < 1e-7, "{place}: {distance:e} off");
                     assert!(angle < bound, "{place}: {angle} radians");

@@ -265,8 +265,8 @@ mod tests {
         for n in 1..=9 {
             let mut kinds = vec![
                 ("crease", fan(n, false, &[], false), 0.15),
-                // Neighbouring modes contract by 3/8 and 1/2 where four triangles meet, and alike at a corner of three.
-                ("corner", fan(n, false, &[], true), 0.15),
+                // Neighbouring modes contract by 3/8 and 1/2 where four triangles meet, and alike, which takes 1 / level, at corners of three and six.
+                ("corner", fan(n, false, &[], true), 0.3),
             ];
             if n > 2 {
                 kinds.extend([

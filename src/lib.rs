@@ -6,7 +6,7 @@
 //! A mesh passes through the modules in this order:
 //!
 //! 1. [`mesh`]: the control mesh, from slices, from an OBJ file with subdivision tags, or built in. It is checked when it is made.
-//! 2. [`subdivision`]: the truth. The Catmull-Clark limit at any point, in f64, by recursive refinement.
+//! 2. [`subdivision`]: the truth. The limit of any [`Scheme`](mesh::Scheme) at any point, in f64, by recursive refinement.
 //! 3. [`plan`]: what a face needs to know about its limit apart from positions: a quadtree over its domain and stencils over its 1-ring.
 //! 4. [`method`](mod@method): a way to draw. It prepares a model as tables for the GPU, and says what it promises. Each comes with a twin, which
 //!    evaluates in f32 from the same tables what the shader evaluates.

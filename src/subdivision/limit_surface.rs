@@ -8,9 +8,10 @@ use crate::patch::bspline;
 use crate::subdivision::cell::SchemeCell;
 use crate::subdivision::limit::{LimitStencil, limit_stencil};
 use crate::subdivision::masks::Blend;
-use crate::subdivision::refine::{refine, with_neighbours};
+use crate::subdivision::refine::{Refinement, refine, with_neighbours};
 use crate::subdivision::regular::bspline_patch;
 use crate::subdivision::schemes::rings;
+use crate::subdivision::split::refine_all;
 
 /// A point of the limit surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,7 +36,12 @@ impl LimitSample {
 
 /// The limit surface of a control mesh: the truth that everything else is measured against.
 ///
-/// Faces are ptex faces: in file order a quad takes one number and an n-gon n, one a corner; holes keep theirs. Of a quad v0 v1 v2 v3,
+/// The scheme is the mesh's own. Catmull-Clark and Loop are exact to rounding, bar a few non-manifold places and interior vertices of two triangles.
+/// Of the butterfly, points off the lattice of dyadic numbers are taken between vertices of level 26, which errs by about 1e-14 of the mesh's size in
+/// position and 1e-7 in tangents; tangents at boundaries and creases err by 1e-7 everywhere. The same holds of Loop-Stam where triangles meet quads.
+///
+/// Faces are ptex faces: in file order a quad takes one number and an n-gon n, one a corner; holes keep theirs. A triangle of a scheme for triangles takes one:
+/// (0,0) is its first vertex, (1,0) the second and (0,1) the third. Of a quad v0 v1 v2 v3,
 /// (0,0) is v0, (1,0) v1, (1,1) v2 and (0,1) v3; of corner i of an n-gon, (0,0) is the corner, (1,0) the middle of the edge that leaves
 /// it, (1,1) the face's centre and (0,1) the middle of the edge that arrives.
 #[derive(Clone, Debug)]
@@ -63,20 +69,38 @@ impl LimitSurface {
 
     /// The limit of a mesh under a scheme that may not be its own.
     pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
-        let ptex = mesh.faces().enumerate().flat_map(|(face, vertices)| {
-            let corners = if scheme.is_whole(vertices.len()) {
-                1
-            } else {
-                vertices.len()
-            };
-            (0..corners).map(move |corner| (face as u32, corner as u32))
+        LimitSurface::of_topology(Topology::new(mesh), mesh.positions().to_vec(), scheme)
+    }
+
+    /// The limit of a topology, such as one that was refined, with a position for each of its vertices.
+    pub fn of_topology(topology: Topology, positions: Vec<DVec3>, scheme: Scheme) -> LimitSurface {
+        let faces = 0..topology.face_count() as u32;
+        let ptex = faces.flat_map(|face| {
+            let arity = topology.face(face).len();
+            let corners = if scheme.is_whole(arity) { 1 } else { arity };
+            (0..corners).map(move |corner| (face, corner as u32))
         });
         LimitSurface {
-            topology: Topology::new(mesh),
-            positions: mesh.positions().to_vec(),
             ptex: ptex.collect(),
+            topology,
+            positions,
             scheme,
         }
+    }
+
+    /// The same surface with its mesh refined once; [`refine_all`] tells the order of vertices and faces.
+    pub fn refined(&self) -> LimitSurface {
+        let Refinement {
+            topology, masks, ..
+        } = refine_all(&self.topology, self.scheme);
+        let blend = |mask| DVec3::blend(mask, &self.positions);
+        let positions = masks.iter().map(|mask| blend(mask)).collect();
+        LimitSurface::of_topology(topology, positions, self.scheme)
+    }
+
+    /// The position of each vertex of the mesh, which is not its limit.
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
     }
 
     /// The topology with its final sharpness.

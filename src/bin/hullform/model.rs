@@ -1,17 +1,55 @@
 //! The model that a subcommand works on.
 
-use hullform::mesh::{BUILTINS, ControlMesh, builtin, read_obj_bytes};
+use crate::options::Shape;
+use hullform::mesh::{BUILTINS, ControlMesh, Scheme, builtin, read_obj_bytes, triangulated};
 use hullform::{Error, Result};
 
-/// Loads MODEL: the path of an OBJ file, `builtin:NAME`, or if absent the first built-in shape.
-pub fn load(model: Option<&str>) -> Result<ControlMesh> {
-    match model {
-        None => builtin(first_builtin()?),
+/// Loads MODEL: the path of an OBJ file, `builtin:NAME`, or if absent the first built-in shape; under the scheme that `--scheme` names or
+/// else its file's name speaks of, triangulated when that scheme takes triangles.
+pub fn load(model: Option<&str>, shape: &Shape) -> Result<ControlMesh> {
+    let (mesh, of_file) = match model {
+        None => (builtin(first_builtin()?)?, None),
         Some(model) => match model.strip_prefix("builtin:") {
-            Some(name) => builtin(name),
-            None => load_file(model),
+            Some(name) => (builtin(name)?, None),
+            None => (load_file(model)?, Scheme::of_file(model)),
         },
+    };
+    let own = of_file.unwrap_or(mesh.options().scheme);
+    let scheme = shape.scheme.as_deref().map_or(Ok(own), str::parse)?;
+    let polygons = mesh.faces().filter(|face| face.len() > 3).count();
+    if !scheme.is_triangular() || polygons == 0 {
+        return mesh.with_scheme(scheme);
     }
+    tracing::warn!(
+        "the scheme {scheme} takes triangles: {polygons} of {} faces are triangulated",
+        mesh.face_count()
+    );
+    triangulated(&mesh, shape.triangulate.into())?.with_scheme(scheme)
+}
+
+/// Loads MODEL for a method, if that draws its scheme.
+///
+/// # Errors
+/// [`Error::Refused`] rather than a picture of another surface, and whatever [`load`] says.
+pub fn load_for(method: &str, model: Option<&str>, shape: &Shape) -> Result<ControlMesh> {
+    let mesh = load(model, shape)?;
+    let drawn: &[Scheme] = match method {
+        "quadtree" => &[Scheme::CatmullClark],
+        "flat" => &[Scheme::CatmullClark, Scheme::Bilinear],
+        _ => &Scheme::ALL,
+    };
+    let scheme = mesh.options().scheme;
+    if drawn.contains(&scheme) {
+        return Ok(mesh);
+    }
+    Err(Error::Refused(format!(
+        "the method {method} does not draw the scheme {scheme}; choose --scheme {}",
+        drawn
+            .iter()
+            .map(|scheme| scheme.name())
+            .collect::<Vec<_>>()
+            .join(" or ")
+    )))
 }
 
 fn load_file(path: &str) -> Result<ControlMesh> {

@@ -101,6 +101,51 @@ impl From<Spacing> for hullform::tessellation::Spacing {
     }
 }
 
+/// Which surface a model has: options of all subcommands that load one.
+#[derive(Args)]
+pub struct Shape {
+    /// Subdivision scheme: catmull-clark, loop, butterfly, loop-stam or bilinear [default: what the file's name begins with
+    /// (`loop_`, `bilinear_`, `catmark_`), else catmull-clark]
+    #[arg(long, value_name = "NAME")]
+    pub scheme: Option<String>,
+    /// How faces are cut for a scheme that takes triangles
+    #[arg(long, value_name = "HOW", default_value = "shortest-diagonal")]
+    pub triangulate: Triangulate,
+}
+
+impl Shape {
+    /// The options again, for a worker.
+    pub fn words(&self) -> Vec<String> {
+        let scheme = self
+            .scheme
+            .iter()
+            .map(|scheme| format!("--scheme={scheme}"));
+        let how = match self.triangulate {
+            Triangulate::Fan => "fan",
+            Triangulate::ShortestDiagonal => "shortest-diagonal",
+        };
+        scheme.chain([format!("--triangulate={how}")]).collect()
+    }
+}
+
+/// How a polygon is cut into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Triangulate {
+    /// From the face's first vertex
+    Fan,
+    /// Along the shortest diagonal first
+    ShortestDiagonal,
+}
+
+impl From<Triangulate> for hullform::mesh::Triangulation {
+    fn from(how: Triangulate) -> Self {
+        match how {
+            Triangulate::Fan => hullform::mesh::Triangulation::Fan,
+            Triangulate::ShortestDiagonal => hullform::mesh::Triangulation::ShortestDiagonal,
+        }
+    }
+}
+
 /// How a surface is cut up: options that `render` and `tessellate` share.
 #[derive(Args)]
 pub struct Cut {

@@ -1,6 +1,6 @@
 //! `hullform plan`: how the faces of a model are planned.
 
-use crate::options::Global;
+use crate::options::{self, Global};
 use crate::{model, print, progress};
 use clap::Args;
 use hullform::Result;
@@ -15,6 +15,8 @@ use std::time::Instant;
 pub struct Arguments {
     /// OBJ file, or builtin:NAME
     model: String,
+    #[command(flatten)]
+    shape: options::Shape,
     /// Deepest level of a plan's quadtree, 1 to 10
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=10))]
     max_level: u8,
@@ -25,7 +27,7 @@ pub struct Arguments {
 
 /// Plans the model's faces and prints what came out.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
-    let mesh = model::load(Some(&arguments.model))?;
+    let mesh = model::load_for("quadtree", Some(&arguments.model), &arguments.shape)?;
     let facts = progress::during("planning", |_| facts(&mesh, arguments))?;
     if global.prints_json() {
         print(&format!("{:#}", Value::Object(facts)))

@@ -34,6 +34,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE.png", default_value = "hullform.png")]
     output: PathBuf,
     #[command(flatten)]
+    shape: options::Shape,
+    #[command(flatten)]
     cut: options::Cut,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
@@ -98,7 +100,11 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
     method(&arguments.cut.method)?;
     let started = Instant::now();
-    let model = Model::new(model::load(arguments.model.as_deref())?);
+    let model = Model::new(model::load_for(
+        &arguments.cut.method,
+        arguments.model.as_deref(),
+        &arguments.shape,
+    )?);
     let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
     let stats_file = arguments.stats.as_deref().map(Pending::create);

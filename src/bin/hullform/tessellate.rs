@@ -21,6 +21,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     #[command(flatten)]
+    shape: options::Shape,
+    #[command(flatten)]
     cut: options::Cut,
 }
 
@@ -28,7 +30,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let format = Format::of(&arguments.output, &[Format::Csv, Format::Obj, Format::Ply])?;
     method(&arguments.cut.method)?;
-    let model = Model::new(model::load(Some(&arguments.model))?);
+    let model = Model::new(model::load_for(
+        &arguments.cut.method,
+        Some(&arguments.model),
+        &arguments.shape,
+    )?);
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {

@@ -1,7 +1,7 @@
 //! `hullform verify`: the conformance suite.
 
 use crate::drawing::Drawing;
-use crate::options::{Global, Json};
+use crate::options::{self, Global, Json};
 use crate::output::{Pending, junit};
 use crate::{model, print};
 use clap::Args;
@@ -26,6 +26,8 @@ pub struct Arguments {
     /// Meshes of your own: OBJ files, or builtin:NAME. Only the cases that concern meshes run, on these
     #[arg(value_name = "MODEL")]
     models: Vec<String>,
+    #[command(flatten)]
+    shape: options::Shape,
     /// Cases to run: a pattern such as 'scale.*' or '*.quads-*'
     #[arg(long, value_name = "GLOB")]
     filter: Option<String>,
@@ -127,7 +129,7 @@ fn be_worker(
     registry: &Registry,
 ) -> Result<()> {
     let models = names.iter().zip(&arguments.models).map(|(name, path)| {
-        let mesh = model::load(Some(path))?;
+        let mesh = model::load_for("quadtree", Some(path), &arguments.shape)?;
         Ok((name.clone(), Model::new(mesh)))
     });
     let settings = Settings {
@@ -206,7 +208,7 @@ impl Files {
 
 fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> {
     for model in &arguments.models {
-        model::load(Some(model))?;
+        model::load_for("quadtree", Some(model), &arguments.shape)?;
     }
     let files = Files::create(arguments)?;
     let device = chosen_device(global)?;
@@ -289,6 +291,7 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<String>> {
             .iter()
             .map(|fault| format!("--fault={fault}")),
     );
+    words.extend(arguments.shape.words());
     words.push("--".into());
     words.extend(arguments.models.iter().cloned());
     Ok(words)

@@ -272,7 +272,7 @@ mod tests {
                 kinds.extend([
                     ("smooth", fan(n, true, &[], false), 0.05),
                     ("dart", fan(n, true, &[0], false), 0.15),
-                    ("sharp vertex", fan(n, true, &[], true), 0.15),
+                    ("sharp vertex", fan(n, true, &[], true), 0.4),
                     ("crease through", fan(n, true, &[0, n / 2], false), 0.15),
                 ]);
             }

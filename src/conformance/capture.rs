@@ -176,11 +176,12 @@ impl Drop for Bench {
     }
 }
 
-/// Half of what a picture must show, so that no triangle is clipped: limits and linear faces stay within the control points' hull.
+/// Half of what a picture must show, so that no triangle is clipped: limits and linear faces stay within the control points' hull, and what
+/// bulges out of it, within twice that.
 fn reach(model: &Model) -> f32 {
     let positions = model.positions();
     let farthest = positions.iter().map(|p| p.abs().max_element());
-    farthest.fold(1e-30, f32::max)
+    2.0 * farthest.fold(1e-30, f32::max)
 }
 
 /// A model on the device.

@@ -8,15 +8,18 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::abi::{self, Captured};
 use crate::conformance::capture::{Frame, SPACINGS, captured, cut, spacing_name};
 use crate::conformance::meshes::{
-    Draft, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, with_positions,
+    Draft, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, under,
+    with_positions,
 };
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
-use crate::mesh::{ControlMesh, CreaseMethod, Model, SchemeOptions, builtin};
-use crate::method::{METHODS, Method, Pass, Prepared, method, to_ptex};
+use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
+use crate::method::{
+    Controls, METHODS, Method, Pass, Prepared, Reproduces, method, method_for, to_ptex,
+};
 use crate::plan::{PlanOptions, Plans, walk};
-use crate::subdivision::{LimitSample, LimitSurface, Scheme};
+use crate::subdivision::LimitSurface;
 use crate::tessellation::Spacing;
 
 /// The group.
@@ -36,7 +39,8 @@ const SAMPLES: usize = 1500;
 /// How a surface is prepared and drawn.
 #[derive(Clone, Copy)]
 struct Setup {
-    method: &'static str,
+    /// By default whichever draws the scheme.
+    method: Option<&'static str>,
     options: PlanOptions,
     cut: Cut,
     /// Only what is evaluated so.
@@ -46,7 +50,7 @@ struct Setup {
 impl Setup {
     fn new(level: f32, spacing: Spacing) -> Setup {
         Setup {
-            method: "quadtree",
+            method: None,
             options: PlanOptions::default(),
             cut: cut(level, spacing),
             kind: None,
@@ -243,18 +247,25 @@ const SHAPES: [&str; 6] = [
     "pole-360",
 ];
 
+/// Every method under every scheme that it does, as far as the scheme knows the shape's tags.
 fn shapes() -> impl Iterator<Item = Case> {
-    let methods = METHODS.iter().map(|method| method.name);
-    methods.flat_map(|method| {
-        SHAPES.into_iter().flat_map(move |shape| {
-            SPACINGS.map(|spacing| {
-                let setup = Setup {
-                    method,
-                    ..Setup::new(6.0, spacing)
-                };
-                let name = format!("limit.{method}.{shape}-{}", spacing_name(spacing));
-                case(name, setup, move |_| builtin(shape))
-            })
+    let pairs = METHODS.iter().flat_map(|method| {
+        method
+            .schemes
+            .iter()
+            .map(move |&scheme| (method.name, scheme))
+    });
+    let triples = pairs.flat_map(|(method, scheme)| SHAPES.map(|shape| (method, scheme, shape)));
+    let known = triples
+        .filter(|&(_, scheme, shape)| builtin(shape).and_then(|mesh| under(mesh, scheme)).is_ok());
+    known.flat_map(|(method, scheme, shape)| {
+        SPACINGS.map(|spacing| {
+            let setup = Setup {
+                method: Some(method),
+                ..Setup::new(6.0, spacing)
+            };
+            let name = format!("limit.{method}.{shape}-{scheme}-{}", spacing_name(spacing));
+            case(name, setup, move |_| under(builtin(shape)?, scheme))
         })
     })
 }
@@ -280,16 +291,18 @@ fn places() -> impl Iterator<Item = Case> {
 }
 
 fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
-    let method = method(setup.method)?;
+    let method = match setup.method {
+        Some(name) => method(name)?,
+        None => method_for(model.mesh().options().scheme),
+    };
     let prepared = method.prepare(model, setup.options)?;
     let passes = prepared.clone();
     let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
-    let truth = truth(context, model, method)?;
     let ruler = Ruler {
         model,
-        truth,
+        right: right(context, model, method, &passes)?,
         unit: diagonal(model.mesh()) * 0.5f64.powi(23),
-        most: method.contract.limit.unwrap_or(1e-6) * 2f64.powi(23),
+        most: within(method) * 2f64.powi(23),
         most_degrees: method.contract.normals.unwrap_or(0.1),
     };
     let samples = samples(&passes, &frame, setup.kind);
@@ -314,20 +327,52 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
     )))
 }
 
-/// The truth of a method's contract: linear faces where it promises no limit.
-fn truth(context: &Context, model: &Model, method: &Method) -> Result<LimitSurface> {
-    let scheme = match method.contract.limit {
-        Some(_) => Scheme::CatmullClark,
-        None => Scheme::Bilinear,
-    };
-    let mesh = model.mesh();
-    if !context.is_wrong() {
-        return Ok(LimitSurface::of_scheme(mesh, scheme));
+/// How far off a method may be.
+fn within(method: &Method) -> f64 {
+    match method.contract.reproduces {
+        Reproduces::Limit(most) | Reproduces::Faces(most) => most,
+        Reproduces::Itself => 1e-6,
     }
+}
+
+/// What is right.
+enum Right {
+    /// A surface in f64.
+    Truth(LimitSurface),
+    /// The method's own, on the CPU.
+    Twin(Controls),
+}
+
+/// The truth of a method's contract: the limit, or linear faces. A method with a surface of its own, and plain triangles, are held to the
+/// CPU's twin.
+fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared) -> Result<Right> {
+    let mesh = model.mesh();
+    let scheme = match method.contract.reproduces {
+        Reproduces::Limit(_) => Some(mesh.options().scheme),
+        Reproduces::Faces(_) if mesh.options().scheme == Scheme::CatmullClark => {
+            Some(Scheme::Bilinear)
+        }
+        Reproduces::Faces(_) | Reproduces::Itself => None,
+    };
     let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
-    positions[0][2] += 1e-3 * diagonal(mesh);
-    let other = with_positions(mesh, &positions)?;
-    Ok(LimitSurface::of_scheme(&other, scheme))
+    if context.is_wrong() {
+        positions[0][2] += 1e-3 * diagonal(mesh);
+    }
+    Ok(match scheme {
+        Some(scheme) => Right::Truth(LimitSurface::of_scheme(
+            &with_positions(mesh, &positions)?,
+            scheme,
+        )),
+        None => {
+            let mut vertices = model.positions();
+            vertices[0].z += if context.is_wrong() {
+                1e-3 * diagonal(mesh) as f32
+            } else {
+                0.0
+            };
+            Right::Twin(prepared.controls(vertices))
+        }
+    })
 }
 
 fn diagonal(mesh: &ControlMesh) -> f64 {
@@ -374,7 +419,7 @@ fn kind_of(pass: &Pass, vertex: &Captured) -> Kind {
 /// What captured vertices are measured with.
 struct Ruler<'a> {
     model: &'a Model,
-    truth: LimitSurface,
+    right: Right,
     /// A unit in the model's own measure.
     unit: f64,
     most: f64,
@@ -384,35 +429,50 @@ struct Ruler<'a> {
 impl Ruler<'_> {
     /// Measures a vertex: units and degrees.
     fn hold(&self, check: &mut Check, pass: &Pass, vertex: &Captured) -> [f64; 2] {
-        let patch = &pass.patches[vertex.patch_number as usize];
-        let uv = to_ptex(patch, vertex.uv);
-        let [u, v] = uv.map(f64::from);
-        let Some(right) = self.truth.evaluate(patch.ptex as usize, u, v) else {
-            check.hold(false, || format!("ptex face {} is a hole", patch.ptex));
+        let number = vertex.patch_number as usize;
+        let ptex = pass.patches[number].ptex;
+        let uv = to_ptex(&pass.patches[number], vertex.uv);
+        let right = match &self.right {
+            Right::Truth(truth) => self.of_truth(truth, ptex, uv),
+            Right::Twin(controls) => {
+                let twin = pass.evaluate(controls, number, Vec2::from(vertex.uv));
+                let position = twin.position.as_dvec3() + self.model.centre();
+                Some((position, Some(twin.normal.as_dvec3())))
+            }
+        };
+        let Some((position, normal)) = right else {
+            check.hold(false, || format!("ptex face {ptex} is a hole"));
             return [0.0; 2];
         };
-        let position = Vec3::from(vertex.position).as_dvec3() + self.model.centre();
-        let units = position.distance(right.position) / self.unit;
-        let degrees = self.degrees(vertex.normal, &right);
+        let captured = Vec3::from(vertex.position).as_dvec3() + self.model.centre();
+        let units = captured.distance(position) / self.unit;
+        let degrees = normal.map_or(0.0, |normal| {
+            let captured = Vec3::from(vertex.normal).as_dvec3();
+            captured
+                .cross(normal)
+                .length()
+                .atan2(captured.dot(normal))
+                .to_degrees()
+        });
         // NaN must not pass.
         check.hold(units <= self.most && degrees <= self.most_degrees, || {
-            format!(
-                "{units:.2} units and {degrees:.4} degrees off at {uv:?} of ptex face {}",
-                patch.ptex
-            )
+            format!("{units:.2} units and {degrees:.4} degrees off at {uv:?} of ptex face {ptex}")
         });
         [units, degrees]
     }
 
-    /// The angle between a captured normal and the right one; 0 where the surface folds or stands still: there f32 has no normal.
-    fn degrees(&self, captured: [f32; 3], right: &LimitSample) -> f64 {
+    /// Position and normal of the truth; no normal where the surface folds or stands still: there f32 has none.
+    fn of_truth(
+        &self,
+        truth: &LimitSurface,
+        ptex: u32,
+        uv: [f32; 2],
+    ) -> Option<(DVec3, Option<DVec3>)> {
+        let [u, v] = uv.map(f64::from);
+        let right = truth.evaluate(ptex as usize, u, v)?;
         let (du, dv) = (right.du.normalize_or_zero(), right.dv.normalize_or_zero());
         let shortest = right.du.length().min(right.dv.length()) / diagonal(self.model.mesh());
-        if du.cross(dv).length() * shortest <= 0.01 {
-            return 0.0;
-        }
-        let (captured, right): (DVec3, DVec3) = (Vec3::from(captured).as_dvec3(), right.normal());
-        let sine = captured.cross(right).length();
-        sine.atan2(captured.dot(right)).to_degrees()
+        let firm = du.cross(dv).length() * shortest > 0.01;
+        Some((right.position, firm.then(|| right.normal())))
     }
 }

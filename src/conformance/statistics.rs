@@ -6,13 +6,14 @@ use crate::conformance::capture::{
     SPACINGS, captured, cut, over_patches, prepare, spacing_name, vertices,
 };
 use crate::conformance::coordinates::{TessLevels, segments, shoot};
+use crate::conformance::meshes::under;
 use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Case, Check, Context, Finding, Group, Status};
 use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{Model, builtin};
-use crate::method::METHODS;
+use crate::method::{METHODS, method_for};
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -51,7 +52,7 @@ fn cases() -> Vec<Case> {
                 spacing_name(spacing)
             );
             cases.push(Case::new(name, RULE, SOURCE, move |context| {
-                let model = Model::new(builtin(shape)?);
+                let model = Model::new(under(builtin(shape)?, method.schemes[0])?);
                 let cuts = LEVELS.map(|level| cut(level, spacing));
                 predicted(context, &model, method.name, &cuts)
             }));
@@ -85,19 +86,25 @@ fn model_cases(name: &str) -> Vec<Case> {
                 let (_, model) =
                     found.ok_or_else(|| Error::Refused(format!("there is no {model}")))?;
                 let cuts = [1.0, 3.0, 8.0].map(|level| cut(level, spacing));
-                predicted(context, model, "quadtree", &cuts)
+                predicted(
+                    context,
+                    model,
+                    method_for(model.mesh().options().scheme).name,
+                    &cuts,
+                )
             })
         })
         .into()
 }
 
-/// One patch a quad, one a corner of an n-gon; none in holes.
+/// One patch a face that the scheme takes whole, one a corner of other faces; none in holes.
 fn patches(model: &Model) -> u64 {
+    let scheme = model.mesh().options().scheme;
     let faces = model.mesh().faces().enumerate();
     let drawn = faces.filter(|&(face, _)| !model.topology().is_hole(face as u32));
     drawn
         .map(|(_, vertices)| match vertices.len() {
-            4 => 1,
+            n if scheme.is_whole(n) => 1,
             n => n as u64,
         })
         .sum()

@@ -10,7 +10,7 @@ use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
-use crate::method::{Contract, Method, Pass, Prepared};
+use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -22,7 +22,7 @@ pub const METHOD: Method = Method {
     schemes: &Scheme::ALL,
     domains: &[Domain::Quads, Domain::Triangles],
     contract: Contract {
-        limit: None,
+        reproduces: Reproduces::Faces(1e-6),
         normals: None,
         interpolates: true,
         watertight: false,

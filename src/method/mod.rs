@@ -27,11 +27,22 @@ pub use points::Points;
 pub use quadtree::PlanStatistics;
 pub use surface::{Controls, SurfacePoint};
 
+/// Which surface a method draws, and how exactly: distances are over the diagonal of the bounding box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reproduces {
+    /// The limit of the scheme, to within this.
+    Limit(f64),
+    /// The faces of the control mesh, to within this.
+    Faces(f64),
+    /// A surface of its own that looks like the limit.
+    Itself,
+}
+
 /// What a method promises.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contract {
-    /// The greatest distance from the Catmull-Clark limit over the diagonal of the bounding box; None when it is another surface.
-    pub limit: Option<f64>,
+    /// Which surface it draws.
+    pub reproduces: Reproduces,
     /// The greatest angle between its normals and the limit's, in degrees.
     pub normals: Option<f64>,
     /// Whether it passes through the control vertices.
@@ -65,9 +76,17 @@ impl Method {
     /// # Errors
     /// [`Error::Option`] when the method does not do the model's scheme, and whatever the method itself refuses.
     pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
-        let scheme = model.mesh().options().scheme;
+        self.check(model.mesh().options().scheme)?;
+        (self.prepare)(model, options)
+    }
+
+    /// Whether the method does a scheme.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when it does not, with the methods that do.
+    pub fn check(&self, scheme: Scheme) -> Result<()> {
         if self.schemes.contains(&scheme) {
-            return (self.prepare)(model, options);
+            return Ok(());
         }
         let able = METHODS
             .iter()
@@ -94,6 +113,12 @@ pub const METHODS: &[Method] = &[
     phong::METHOD,
     flat::METHOD,
 ];
+
+/// The method that a scheme is drawn by when nobody names one: the first in the table that does it.
+pub fn method_for(scheme: Scheme) -> &'static Method {
+    let mut able = METHODS.iter().filter(|method| method.check(scheme).is_ok());
+    able.next().expect("the last row does every scheme")
+}
 
 /// The method of a name.
 ///

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{Contract, Method, Pass, Prepared, patches};
+use crate::method::{Contract, Method, Pass, Prepared, Reproduces, patches};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -19,7 +19,7 @@ pub const METHOD: Method = Method {
     schemes: &[Scheme::Loop, Scheme::Butterfly],
     domains: &[Domain::Triangles],
     contract: Contract {
-        limit: None,
+        reproduces: Reproduces::Itself,
         normals: None,
         interpolates: true,
         watertight: true,

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{Contract, Method, Pass, Prepared, patches};
+use crate::method::{Contract, Method, Pass, Prepared, Reproduces, patches};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -28,7 +28,7 @@ pub const METHOD: Method = Method {
     schemes: &[Scheme::Loop, Scheme::Butterfly],
     domains: &[Domain::Triangles],
     contract: Contract {
-        limit: None,
+        reproduces: Reproduces::Itself,
         normals: None,
         interpolates: false,
         watertight: true,

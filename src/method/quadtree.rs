@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Method, Pass, Prepared};
+use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
@@ -31,7 +31,7 @@ pub const METHOD: Method = Method {
     schemes: &[Scheme::CatmullClark],
     domains: &[Domain::Quads],
     contract: Contract {
-        limit: Some(1e-6),
+        reproduces: Reproduces::Limit(1e-6),
         normals: Some(0.1),
         interpolates: false,
         watertight: true,

@@ -8,7 +8,7 @@ use glam::Vec3;
 use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Pass, to_ptex};
+use hullform::method::{Displacement, Method, Pass, to_ptex};
 use hullform::tessellation::triangulate;
 use hullform::{Error, Result, abi};
 
@@ -19,7 +19,7 @@ const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
 pub fn capture(
     gpu: &Gpu,
     model: &Model,
-    method: &str,
+    method: &Method,
     cut: Cut,
     global: &Global,
 ) -> Result<Surface> {

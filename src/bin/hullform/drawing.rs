@@ -9,7 +9,7 @@ use hullform::gpu::{
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::method;
+use hullform::method::Method;
 use hullform::plan::PlanOptions;
 use hullform::{Result, tessellation::Spacing};
 
@@ -31,11 +31,11 @@ impl<'a> Drawing<'a> {
     pub fn new(
         gpu: &'a Gpu,
         model: &Model,
-        name: &str,
+        method: &Method,
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
         let started = Instant::now();
-        let prepared = method(name)?.prepare(model, PlanOptions::default())?;
+        let prepared = method.prepare(model, PlanOptions::default())?;
         let planned = Instant::now();
         let device = gpu.device.raw();
         let mut drawing = Drawing {

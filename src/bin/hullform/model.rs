@@ -27,31 +27,6 @@ pub fn load(model: Option<&str>, shape: &Shape) -> Result<ControlMesh> {
     triangulated(&mesh, shape.triangulate.into())?.with_scheme(scheme)
 }
 
-/// Loads MODEL for a method, if that draws its scheme.
-///
-/// # Errors
-/// [`Error::Refused`] rather than a picture of another surface, and whatever [`load`] says.
-pub fn load_for(method: &str, model: Option<&str>, shape: &Shape) -> Result<ControlMesh> {
-    let mesh = load(model, shape)?;
-    let drawn: &[Scheme] = match method {
-        "quadtree" => &[Scheme::CatmullClark],
-        "flat" => &[Scheme::CatmullClark, Scheme::Bilinear],
-        _ => &Scheme::ALL,
-    };
-    let scheme = mesh.options().scheme;
-    if drawn.contains(&scheme) {
-        return Ok(mesh);
-    }
-    Err(Error::Refused(format!(
-        "the method {method} does not draw the scheme {scheme}; choose --scheme {}",
-        drawn
-            .iter()
-            .map(|scheme| scheme.name())
-            .collect::<Vec<_>>()
-            .join(" or ")
-    )))
-}
-
 fn load_file(path: &str) -> Result<ControlMesh> {
     let bytes = std::fs::read(path).map_err(|source| Error::File {
         path: path.into(),

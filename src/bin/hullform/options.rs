@@ -2,6 +2,8 @@
 
 use crate::camera::Camera;
 use clap::{Args, ValueEnum};
+use hullform::mesh::Scheme;
+use hullform::method::{Method, method, method_for};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -149,9 +151,9 @@ impl From<Triangulate> for hullform::mesh::Triangulation {
 /// How a surface is cut up: options that `render` and `tessellate` share.
 #[derive(Args)]
 pub struct Cut {
-    /// Surface method
-    #[arg(long, value_name = "NAME", default_value = "quadtree")]
-    pub method: String,
+    /// Surface method [default: the first that draws the model's scheme]
+    #[arg(long, value_name = "NAME")]
+    method: Option<String>,
     #[command(flatten)]
     steps: Steps,
 }
@@ -168,6 +170,15 @@ pub struct Steps {
 }
 
 impl Cut {
+    /// The method that is asked for, or else draws a scheme.
+    pub fn method(&self, scheme: Scheme) -> hullform::Result<&'static Method> {
+        let Some(name) = &self.method else {
+            return Ok(method_for(scheme));
+        };
+        let method = method(name)?;
+        method.check(scheme).map(|()| method)
+    }
+
     /// As the library takes it.
     pub fn cut(&self) -> hullform::gpu::Cut {
         self.steps.cut()

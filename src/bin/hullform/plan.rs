@@ -27,7 +27,7 @@ pub struct Arguments {
 
 /// Plans the model's faces and prints what came out.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
-    let mesh = model::load_for("quadtree", Some(&arguments.model), &arguments.shape)?;
+    let mesh = model::load(Some(&arguments.model), &arguments.shape)?;
     let facts = progress::during("planning", |_| facts(&mesh, arguments))?;
     if global.prints_json() {
         print(&format!("{:#}", Value::Object(facts)))

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Prepared, method};
+use hullform::method::{Displacement, Method, Prepared};
 use hullform::tessellation::Domain;
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
@@ -74,7 +74,7 @@ pub enum Shading {
 /// Everything to be drawn.
 struct Scene<'a> {
     model: &'a Model,
-    method: &'a str,
+    method: &'a Method,
     cut: Cut,
     sight: Sight,
     shading: Shading,
@@ -98,13 +98,10 @@ enum Sight {
 /// The files come last: what the validation layer complained about is not written.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
-    method(&arguments.cut.method)?;
     let started = Instant::now();
-    let model = Model::new(model::load_for(
-        &arguments.cut.method,
-        arguments.model.as_deref(),
-        &arguments.shape,
-    )?);
+    let mesh = model::load(arguments.model.as_deref(), &arguments.shape)?;
+    arguments.cut.method(mesh.options().scheme)?;
+    let model = Model::new(mesh);
     let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
     let stats_file = arguments.stats.as_deref().map(Pending::create);
@@ -138,7 +135,7 @@ fn draw_picture(
     let (target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
-        method: &arguments.cut.method,
+        method: arguments.cut.method(model.mesh().options().scheme)?,
         cut: arguments.cut.cut(),
         sight: Sight::Framed(arguments.sight.camera, width as f32 / height as f32),
         shading: arguments.shading,
@@ -175,7 +172,7 @@ pub fn draw_lit(
     gpu: &Gpu,
     target: &OffscreenTarget,
     model: &Model,
-    method: &str,
+    method: &Method,
     cut: Cut,
     view: View,
     global: &Global,
@@ -333,7 +330,7 @@ fn statistics(
     json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": scene.method,
+        "method": scene.method.name,
         "level": scene.cut.level,
         "spacing": scene.cut.spacing.name(),
         "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },

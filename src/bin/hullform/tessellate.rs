@@ -8,7 +8,6 @@ use crate::{model, print, progress};
 use clap::Args;
 use hullform::Result;
 use hullform::mesh::Model;
-use hullform::method::method;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -29,17 +28,12 @@ pub struct Arguments {
 /// Tessellates the model on the device and writes what came out.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let format = Format::of(&arguments.output, &[Format::Csv, Format::Obj, Format::Ply])?;
-    method(&arguments.cut.method)?;
-    let model = Model::new(model::load_for(
-        &arguments.cut.method,
-        Some(&arguments.model),
-        &arguments.shape,
-    )?);
+    let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
+    let method = arguments.cut.method(model.mesh().options().scheme)?;
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {
-        let (method, cut) = (&arguments.cut.method, arguments.cut.cut());
-        capture(&gpu, &model, method, cut, global)
+        capture(&gpu, &model, method, arguments.cut.cut(), global)
     })?;
     gpu.finish()?;
     progress::during("writing", |_| {

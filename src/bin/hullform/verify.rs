@@ -129,7 +129,7 @@ fn be_worker(
     registry: &Registry,
 ) -> Result<()> {
     let models = names.iter().zip(&arguments.models).map(|(name, path)| {
-        let mesh = model::load_for("quadtree", Some(path), &arguments.shape)?;
+        let mesh = model::load(Some(path), &arguments.shape)?;
         Ok((name.clone(), Model::new(mesh)))
     });
     let settings = Settings {
@@ -208,7 +208,7 @@ impl Files {
 
 fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> {
     for model in &arguments.models {
-        model::load_for("quadtree", Some(model), &arguments.shape)?;
+        model::load(Some(model), &arguments.shape)?;
     }
     let files = Files::create(arguments)?;
     let device = chosen_device(global)?;

@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 
 use crate::conformance::random::Random;
 use crate::error::Result;
-use crate::mesh::{ControlMesh, ControlMeshBuilder, SchemeOptions};
+use crate::mesh::{
+    ControlMesh, ControlMeshBuilder, Scheme, SchemeOptions, Triangulation, triangulated,
+};
 
 pub use draft::Draft;
 
@@ -184,6 +186,18 @@ pub fn moved(mesh: &ControlMesh, scale: f64, by: f64) -> Result<ControlMesh> {
         .map(|p| p.to_array().map(|x| scale * x + by))
         .collect();
     with_positions(mesh, &positions)
+}
+
+/// A mesh under a scheme, cut into triangles if that takes no others.
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) when the scheme knows nothing of the mesh's tags.
+pub fn under(mesh: ControlMesh, scheme: Scheme) -> Result<ControlMesh> {
+    if scheme.is_triangular() {
+        triangulated(&mesh, Triangulation::default())?.with_scheme(scheme)
+    } else {
+        mesh.with_scheme(scheme)
+    }
 }
 
 #[cfg(test)]

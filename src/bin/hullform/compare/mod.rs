@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::Vec3;
 use hullform::gpu::Cut;
-use hullform::mesh::Model;
+use hullform::mesh::{Model, Scheme};
 use hullform::method::{METHODS, Method, Prepared, method};
 use hullform::plan::PlanOptions;
 use hullform::subdivision::LimitSurface;
@@ -49,6 +49,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE.png")]
     output: PathBuf,
     #[command(flatten)]
+    shape: options::Shape,
+    #[command(flatten)]
     steps: options::Steps,
     /// Size in pixels of each of the three pictures of a method
     #[arg(long, value_name = "WxH", default_value = "480x360")]
@@ -59,7 +61,7 @@ pub struct Arguments {
 
 /// A method that could draw the model: what it made, and how far off that is.
 struct Column {
-    name: &'static str,
+    method: &'static Method,
     patches: usize,
     surface: Surface,
     errors: Errors,
@@ -79,9 +81,9 @@ struct Refusal {
 /// The picture comes last: what the validation layer complained about is not written.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
-    let asked = asked(&arguments.methods)?;
     let against = against(&arguments.against)?;
-    let model = Model::new(model::load(Some(&arguments.model))?);
+    let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
+    let asked = asked(&arguments.methods, model.mesh().options().scheme)?;
     let file = Pending::create(&arguments.output)?;
     let (able, refusals) = sort_out(&model, &asked)?;
     let mut known = Known::new(reference(&model, against)?);
@@ -101,10 +103,11 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     report(arguments, global, &columns, &refusals)
 }
 
-/// The methods of `--methods`, each once; all of them if none is named.
-fn asked(names: &[String]) -> Result<Vec<&'static Method>> {
+/// The methods of `--methods`, each once; all that do the scheme if none is named.
+fn asked(names: &[String], scheme: Scheme) -> Result<Vec<&'static Method>> {
     if names.is_empty() {
-        return Ok(METHODS.iter().collect());
+        let able = METHODS.iter().filter(|method| method.check(scheme).is_ok());
+        return Ok(able.collect());
     }
     let mut methods: Vec<&'static Method> = Vec::new();
     for name in names {
@@ -190,12 +193,10 @@ fn measure(
     global: &Global,
 ) -> Result<Column> {
     let cut = arguments.steps.cut();
-    let surface = progress::during("tessellating", |_| {
-        capture(gpu, model, method.name, cut, global)
-    })?;
+    let surface = progress::during("tessellating", |_| capture(gpu, model, method, cut, global))?;
     progress::during("evaluating the reference", |bar| known.learn(&surface, bar));
     Ok(Column {
-        name: method.name,
+        method,
         patches,
         errors: Errors::new(&surface, known, diagonal(model)),
         surface,
@@ -236,7 +237,7 @@ fn draw(
     let finish = || composed::compose(&target.read_pixels(), width, height, factor);
     let mut rows = Vec::new();
     for column in columns {
-        render::draw_lit(gpu, &target, model, column.name, cut, view, global)?;
+        render::draw_lit(gpu, &target, model, column.method, cut, view, global)?;
         let lit = finish();
         let mut tiles = vec![lit];
         let maps = [&column.errors.positions, &column.errors.normals];
@@ -285,7 +286,7 @@ fn report(
 
 fn facts(column: &Column) -> Value {
     json!({
-        "method": column.name,
+        "method": column.method.name,
         "triangles": column.surface.triangles.len(),
         "patches": column.patches,
         "vertices": column.surface.points.len(),
@@ -309,7 +310,7 @@ fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> S
         let triangles = column.surface.triangles.len();
         let line = format!(
             "{:16} {triangles:>10}   {}",
-            column.name,
+            column.method.name,
             numbers.join("  ")
         );
         line.trim_end().to_string()

@@ -52,5 +52,6 @@ void main() {
     out_texture = texture_coordinates(in_patch, uv);
     out_patch = in_patch;
     gl_Position = frame.view_projection * vec4(surface.position, 1.0);
+    if ((frame.flags & FRAME_PARITY) != 0u) gl_Position = amplified(gl_Position, surface.position);
     if ((frame.flags & FRAME_CAPTURE) != 0u) capture(in_patch, uv, surface.position, normal);
 }

@@ -3,7 +3,7 @@
 use crate::conformance::capture::{SPACINGS, spacing_name};
 use crate::conformance::edges::{Drawn, LEVELS, LineKind, Setup, compare, finding, pictures};
 use crate::conformance::meshes::{
-    Draft, creased_sheet, framed_polygon, moved, open_star, sheet, star,
+    Draft, creased_polygons, creased_sheet, framed_polygon, moved, open_star, sheet, star,
 };
 use crate::conformance::{Case, Context};
 use crate::error::{Error, Result};
@@ -185,7 +185,7 @@ fn valences() -> impl Iterator<Item = Case> {
     stars.into_iter().chain(poles).chain(open).chain(polygons)
 }
 
-/// Every level alone, on a random mesh of every kind of face.
+/// Every level alone, on a mesh of every kind of face.
 fn levels() -> impl Iterator<Item = Case> {
     LEVELS.into_iter().flat_map(|level| {
         SPACINGS.map(|spacing| {
@@ -195,12 +195,17 @@ fn levels() -> impl Iterator<Item = Case> {
                 ..Setup::new(&[level])
             };
             let name = format!("edges.level.{word}-{}", spacing_name(spacing));
-            case(name, setup, |_| builtin("pole-7"))
+            case(name, setup, |_| creased_polygons())
         })
     })
 }
 
 fn shapes() -> impl Iterator<Item = Case> {
+    // Where 360 triangles meet, stencils have a thousand weights.
+    let setup = Setup::new(&[3.0]);
+    let pole = case("edges.shape.pole-360".into(), setup, |_| {
+        builtin("pole-360")
+    });
     let shapes = [
         "hull",
         "cube",
@@ -208,9 +213,8 @@ fn shapes() -> impl Iterator<Item = Case> {
         "sheet",
         "ngons",
         "cubes-2x1x1",
-        "pole-360",
     ];
-    shapes.into_iter().flat_map(|shape| {
+    let shapes = shapes.into_iter().flat_map(|shape| {
         SPACINGS.map(|spacing| {
             let setup = Setup {
                 spacings: vec![spacing],
@@ -219,7 +223,8 @@ fn shapes() -> impl Iterator<Item = Case> {
             let name = format!("edges.shape.{shape}-{}", spacing_name(spacing));
             case(name, setup, move |_| builtin(shape))
         })
-    })
+    });
+    shapes.chain([pole])
 }
 
 const WAYS: [(&str, Drawn); 8] = [

@@ -9,7 +9,7 @@
 
 use crate::conformance::capture::{Loaded, SIDE, SPACINGS, capturing, cut, prepare, spacing_name};
 use crate::conformance::edges::bumps;
-use crate::conformance::meshes::{Parts, framed_polygon, sheet, star, with_positions};
+use crate::conformance::meshes::{creased_polygons, framed_polygon, sheet, star, with_positions};
 use crate::conformance::{Case, Check, Context, Finding};
 use crate::error::Result;
 use crate::gpu::{Cut, SurfaceOptions};
@@ -74,11 +74,11 @@ const SCENES: [Scene; 9] = [
         level: 13.0,
     },
     Scene {
-        name: "pole_of_64",
-        make: || builtin("pole-64"),
+        name: "star_of_3",
+        make: || star(3).build(),
         window: 0.4,
         closed: false,
-        level: 8.0,
+        level: 11.0,
     },
     Scene {
         name: "ball",
@@ -95,52 +95,6 @@ const SCENES: [Scene; 9] = [
         level: 31.0,
     },
 ];
-
-/// Quads, triangles, pentagons and hexagons with creases of all kinds between them.
-fn creased_polygons() -> Result<ControlMesh> {
-    let mut parts = sheet(6);
-    for face in [14, 15, 20, 27] {
-        split(&mut parts, face);
-    }
-    for edge in [[16, 17], [31, 32]] {
-        merge(&mut parts, edge);
-    }
-    let rows = [(14, 10.0), (21, 2.5), (28, 0.7)];
-    parts.tagged(|builder| {
-        let edges = rows
-            .into_iter()
-            .flat_map(|(first, s)| (1..5).map(move |x| (first + x, s)));
-        edges.fold(builder, |builder, (a, s)| builder.crease(a, a + 1, s))
-    })
-}
-
-/// Cuts a quad in two triangles.
-fn split(parts: &mut Parts, face: usize) {
-    let [a, b, c, d] = parts.faces[face][..] else {
-        return;
-    };
-    parts.faces[face] = vec![a, b, c];
-    parts.faces.push(vec![a, c, d]);
-}
-
-/// Joins the two faces on an edge.
-fn merge(parts: &mut Parts, [a, b]: [u32; 2]) {
-    let starts = |face: &[u32], a, b| {
-        (0..face.len()).find(|&i| face[i] == a && face[(i + 1) % face.len()] == b)
-    };
-    let mut joined = Vec::new();
-    for (from, to) in [(a, b), (b, a)] {
-        let found =
-            (0..parts.faces.len()).find_map(|f| Some((f, starts(&parts.faces[f], from, to)?)));
-        let Some((face, at)) = found else { return };
-        let mut vertices = parts.faces.remove(face);
-        vertices.rotate_left(at + 1);
-        // From the edge's end all the way round to just before it.
-        vertices.pop();
-        joined.extend(vertices);
-    }
-    parts.faces.push(joined);
-}
 
 /// What moves vertices.
 #[derive(Clone, Copy)]

@@ -246,7 +246,10 @@ fn every_instruction_that_may_be_contracted_is_noticed() {
     const NO_CONTRACTION: u32 = 42;
     let (name, bytes) = watertight(".equal.tese")[0];
     let (count, _) = Flow::of(bytes).contractible(&EVALUATED);
-    let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+    let words = bytes
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+    let mut words: Vec<u32> = words.collect();
     let (mut at, mut taken) = (5, 0);
     while at < words.len() {
         let length = (words[at] >> 16) as usize;

@@ -7,6 +7,8 @@
 //! The crack amplifier of VK-GL-CTS moves each vertex whose position has an odd number of bits by a fiftieth of the picture: where faces
 //! differ by a single bit, a hole of several pixels opens.
 
+use glam::{DQuat, DVec3};
+
 use crate::conformance::capture::{Loaded, SIDE, SPACINGS, capturing, cut, prepare, spacing_name};
 use crate::conformance::edges::bumps;
 use crate::conformance::meshes::{creased_polygons, framed_polygon, sheet, star, with_positions};
@@ -89,12 +91,20 @@ const SCENES: [Scene; 9] = [
     },
     Scene {
         name: "cube",
-        make: || builtin("cube"),
-        window: 0.3,
+        make: cube_on_a_corner,
+        window: 0.15,
         closed: true,
         level: 31.0,
     },
 ];
+
+/// The cube with a corner towards the eye.
+fn cube_on_a_corner() -> Result<ControlMesh> {
+    let cube = builtin("cube")?;
+    let turn = DQuat::from_rotation_arc(DVec3::ONE.normalize(), DVec3::Z);
+    let turned = cube.positions().iter().map(|&p| (turn * p).to_array());
+    with_positions(&cube, &turned.collect::<Vec<_>>())
+}
 
 /// What moves vertices.
 #[derive(Clone, Copy)]

@@ -1,9 +1,11 @@
 //! The cases of group `edges`: by what a line lies between, by valence, level, shape, way of drawing, plans, place, and on random meshes.
 
 use crate::conformance::capture::{SPACINGS, spacing_name};
-use crate::conformance::edges::{Drawn, LEVELS, LineKind, Setup, compare, finding, pictures};
+use crate::conformance::edges::{
+    Drawn, LEVELS, LineKind, Setup, compare, finding, pictures, random_mesh,
+};
 use crate::conformance::meshes::{
-    Draft, creased_polygons, creased_sheet, framed_polygon, moved, open_star, sheet, star,
+    creased_polygons, creased_sheet, framed_polygon, moved, open_star, sheet, star,
 };
 use crate::conformance::{Case, Context};
 use crate::error::{Error, Result};
@@ -317,9 +319,8 @@ fn random() -> impl Iterator<Item = Case> {
         Case::new(name, RULE, SOURCE, move |context| {
             let mut compared = super::Compared::default();
             for mesh in 10 * number..10 * number + 10 {
-                let random = context.random(&format!("edges.random.{mesh}"));
-                let model = Model::new(Draft::random(random)?);
-                let setup = Setup::new(&[LEVELS[mesh % 9], 3.0, 8.0]);
+                let model = Model::new(random_mesh(context, mesh)?);
+                let setup = Setup::new(&[LEVELS[mesh as usize % 9], 3.0, 8.0]);
                 let mut found = compare(context, &model, &setup)?;
                 found.first = found.first.map(|first| format!("mesh {mesh}, {first}"));
                 compared.add(found);

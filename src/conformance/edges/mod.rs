@@ -13,6 +13,7 @@ mod shared;
 
 use crate::conformance::capture::{Loaded, SPACINGS, capturing, cut};
 use crate::conformance::determinism::{ONE_A_TIME, smallest_ring, whole_ring};
+use crate::conformance::meshes::Draft;
 use crate::conformance::{Context, Finding, Group};
 use crate::error::Result;
 use crate::gpu::{Cut, Fill, Slots, SurfaceOptions};
@@ -157,6 +158,18 @@ fn compare_cut(
         .first
         .map(|first| format!("level {} {:?}, {first}", cut.level, cut.spacing));
     Ok(compared)
+}
+
+/// A random mesh of the context's seed: with even numbers a manifold one.
+///
+/// # Errors
+/// None.
+pub fn random_mesh(context: &Context, number: u32) -> Result<ControlMesh> {
+    let random = context.random(&format!("edges.random.{number}"));
+    match number % 2 {
+        0 => Draft::manifold(random),
+        _ => Draft::random(random),
+    }
 }
 
 /// Options for all cuts.

@@ -101,7 +101,8 @@ const SCENES: [Scene; 9] = [
 /// The cube with a corner towards the eye.
 fn cube_on_a_corner() -> Result<ControlMesh> {
     let cube = builtin("cube")?;
-    let turn = DQuat::from_rotation_arc(DVec3::ONE.normalize(), DVec3::Z);
+    let corner = DVec3::new(1.0, 1.0, -1.0).normalize();
+    let turn = DQuat::from_rotation_arc(corner, DVec3::Z);
     let turned = cube.positions().iter().map(|&p| (turn * p).to_array());
     with_positions(&cube, &turned.collect::<Vec<_>>())
 }

@@ -338,7 +338,7 @@ fn within(method: &Method) -> f64 {
 /// What is right.
 enum Right {
     /// A surface in f64.
-    Truth(LimitSurface),
+    Truth(Box<LimitSurface>),
     /// The method's own, on the CPU.
     Twin(Controls),
 }
@@ -359,10 +359,10 @@ fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared)
         positions[0][2] += 1e-3 * diagonal(mesh);
     }
     Ok(match scheme {
-        Some(scheme) => Right::Truth(LimitSurface::of_scheme(
+        Some(scheme) => Right::Truth(Box::new(LimitSurface::of_scheme(
             &with_positions(mesh, &positions)?,
             scheme,
-        )),
+        ))),
         None => {
             let mut vertices = model.positions();
             vertices[0].z += if context.is_wrong() {

@@ -8,13 +8,13 @@ use glam::{DVec3, Vec2};
 use hullform::abi;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
-use hullform::method::{METHODS, method};
+use hullform::method::{METHODS, Method, method};
 use hullform::plan::{
     Catalogue, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Plans, Ring, VertexKind,
     VertexPlan, walk,
 };
 use hullform::subdivision::{Blend, LimitSurface};
-use hullform::tessellation::{Levels, required_level};
+use hullform::tessellation::{Domain, Levels, required_level};
 use proptest::prelude::*;
 
 /// The ring of every quad and of every n-gon's corner of a mesh, with its ptex number.
@@ -96,6 +96,14 @@ fn hold_tree(plan: &Plan, children_each: usize) {
     }
 }
 
+/// The methods that do the model's scheme.
+fn able(model: &Model) -> impl Iterator<Item = &'static Method> {
+    let scheme = model.mesh().options().scheme;
+    METHODS
+        .iter()
+        .filter(move |method| method.check(scheme).is_ok())
+}
+
 /// The points that the evaluation at (u, v) reads; None where it stops at an extraordinary vertex.
 fn points_read(plans: Plans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
     let leaf = walk(plans, plans.headers[plan as usize].root, uv);
@@ -107,6 +115,7 @@ fn points_read(plans: Plans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
 fn hold_counts(packed: &PackedPlans, plan: u32, level: f32, coordinates: &[[f32; 2]]) {
     let header = packed.headers[plan as usize];
     let levels = Levels {
+        domain: Domain::Quads,
         edges: [1.0; 4],
         inside: level,
     };
@@ -241,7 +250,7 @@ proptest! {
         let truth = LimitSurface::new(model.mesh());
         let expected = (0..truth.ptex_count() as u32).filter(|&ptex| !model.topology().is_hole(truth.face_corner(ptex as usize).0));
         let expected: Vec<u32> = expected.collect();
-        for method in METHODS {
+        for method in able(&model) {
             let prepared = method.prepare(&model, PlanOptions::default()).expect("sound options");
             let patches = prepared.passes.iter().flat_map(|pass| &pass.patches);
             let mut found: Vec<u32> = patches.map(|patch| patch.ptex).collect();
@@ -357,7 +366,7 @@ fn a_creased_face_has_the_same_plan_however_it_is_turned() {
 #[test]
 fn patches_of_n_gons_are_marked_as_halves_and_their_neighbours_edges_as_even() {
     let model = Model::new(builtin("ngons").expect("a built-in shape"));
-    for method in METHODS {
+    for method in able(&model) {
         let prepared = method
             .prepare(&model, PlanOptions::default())
             .expect("sound options");

@@ -68,36 +68,71 @@ vec3 stencil_point(Patch record, PlanHeader plan, bool inside, uint places, vec3
     return sum;
 }
 
-// Fills the slot. Every 32nd point, over all parts of the slot, is this invocation's.
-void run_stencils(Patch record, uint slot, uint level, uint count) {
-    uint next = USES + gl_InvocationID;
-    uint end = USES + borders[record.plan].plain_count;
-    uint plain = borders[record.plan].plain - USES;
-    for (; next < min(end, count); next += CONTROL_INVOCATIONS) {
-        scratch[slot + next] = vec4(ring_point(record, controls[plain + next]), 0.0);
-    }
+// Where the parts of a slot end: the heads, the plain vertices, the points of each use's plan.
+struct Parts {
+    uint plain;
+    uint ends[USES];
+};
+
+// How many points of a use's plan are in the slot.
+uint use_points(PlanHeader header, uint flags, uint level) {
+    bool halved = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u;
+    return (flags & USE_LIMIT) != 0u ? 3u : header.counts[min(level + uint(halved), HIGHEST_LEVEL + 1u)];
+}
+
+// Writes the heads on the way, each by the invocation of its number.
+Parts find_parts(Patch record, uint slot, uint level, uint count) {
+    Parts parts;
+    parts.plain = USES + borders[record.plan].plain_count;
+    uint end = parts.plain;
     for (uint number = 0u; number < USES; ++number) {
         uint plan = borders[record.plan].plans[number];
-        uint flags = borders[record.plan].flags[number];
-        uint places = borders[record.plan].rings[number];
         bool planned = plan != NO_PLAN;
-        bool limit = (flags & USE_LIMIT) != 0u;
-        bool halved = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u;
-        PlanHeader header = plans[planned ? plan : 0u];
-        bool inside = number == 0u;
-        vec3 origin = planned ? ring_point(record, inside ? 0u : controls[places]) : vec3(0.0);
-        uint start = planned ? end : USES;
-        if (gl_InvocationID == number && count > 0u) scratch[slot + number] = vec4(origin, float(start));
-        uint points = limit ? 3u : header.counts[min(level + uint(halved), HIGHEST_LEVEL + 1u)];
-        // Bounded by the weights that there are: a plan that is garbage must not keep the device busy for ever.
-        header.ring_size = min(header.ring_size, uint(weights.length()) / max(min(points, count), 1u));
-        end += planned ? points : 0u;
-        uint pair = limit ? 2u * (flags >> USE_SIDE_SHIFT) : 0u;
-        for (; next < min(end, count); next += CONTROL_INVOCATIONS) {
-            uint stencil = next - start;
-            if (stencil > 0u) stencil += pair;
-            scratch[slot + next] = vec4(stencil_point(record, header, inside, places, origin, stencil), 0.0);
+        if (gl_InvocationID == number && count > 0u) {
+            uint first = number == 0u ? 0u : controls[borders[record.plan].rings[number]];
+            vec3 origin = planned ? ring_point(record, first) : vec3(0.0);
+            scratch[slot + number] = vec4(origin, float(planned ? end : USES));
         }
+        if (planned) end += use_points(plans[plan], borders[record.plan].flags[number], level);
+        parts.ends[number] = end;
+    }
+    return parts;
+}
+
+// Point `next` of the slot, which is one of a plan. Each invocation finds the plan of its own point: parts are short, and if all went through
+// them together most would wait most of the time.
+vec3 plan_point(Patch record, Parts parts, uint level, uint count, uint next) {
+    uint number = 0u;
+    uint start = parts.plain;
+    for (uint i = 0u; i < USES - 1u; ++i) {
+        bool beyond = next >= parts.ends[i];
+        number = beyond ? i + 1u : number;
+        start = beyond ? parts.ends[i] : start;
+    }
+    uint plan = borders[record.plan].plans[number];
+    uint flags = borders[record.plan].flags[number];
+    uint places = borders[record.plan].rings[number];
+    bool inside = number == 0u;
+    PlanHeader header = plans[plan != NO_PLAN ? plan : 0u];
+    // Bounded by the weights that there are: a plan that is garbage must not keep the device busy for ever.
+    uint points = use_points(header, flags, level);
+    header.ring_size = min(header.ring_size, uint(weights.length()) / max(min(points, count), 1u));
+    uint stencil = next - start;
+    if ((flags & USE_LIMIT) != 0u && stencil > 0u) stencil += 2u * (flags >> USE_SIDE_SHIFT);
+    vec3 origin = ring_point(record, inside ? 0u : controls[places]);
+    return stencil_point(record, header, inside, places, origin, stencil);
+}
+
+// Fills the slot. Every 32nd point is this invocation's.
+void run_stencils(Patch record, uint slot, uint level, uint count) {
+    Parts parts = find_parts(record, slot, level, count);
+    uint plain = borders[record.plan].plain - USES;
+    uint next = USES + gl_InvocationID;
+    for (; next < min(parts.plain, count); next += CONTROL_INVOCATIONS) {
+        scratch[slot + next] = vec4(ring_point(record, controls[plain + next]), 0.0);
+    }
+    for (; next < count; next += CONTROL_INVOCATIONS) {
+        scratch[slot + next] = vec4(plan_point(record, parts, level, count, next), 0.0);
     }
 }
 #endif

@@ -6,8 +6,8 @@ use std::collections::HashMap;
 use ash::vk;
 use hullform::abi::{self, Captured};
 use hullform::gpu::{
-    Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target, TessellatedSurface,
-    View, Workaround, ring,
+    Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, SurfaceOptions, Target,
+    TessellatedSurface, View, Workaround, ring,
 };
 use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
@@ -197,6 +197,36 @@ impl Loaded<'_> {
 
     pub fn prepared(&self) -> &Prepared {
         self.surface().prepared()
+    }
+
+    /// Moves the control vertices on the device, as an engine that skins its mesh there would, and computes what depends on them.
+    pub fn move_on_device(&self, positions: &[[f32; 3]]) {
+        let device = self.gpu.device.raw();
+        let layout = self.gpu.layout();
+        // SAFETY: device and layout are live.
+        let pipeline = unsafe { PointPipeline::new(device, layout, vk::PipelineCache::null()) };
+        let pipeline = pipeline.expect("the shipped module makes a pipeline");
+        let barrier = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ);
+        let transfer = vk::PipelineStageFlags::TRANSFER;
+        let readers =
+            vk::PipelineStageFlags::COMPUTE_SHADER | vk::PipelineStageFlags::VERTEX_SHADER;
+        let none = vk::DependencyFlags::empty();
+        let moved = self.gpu.device.submit(|cmd| {
+            // SAFETY: recording on the device that made everything, outside of a render pass; the meshes of the tests are small enough for
+            // an update from the command buffer, and nothing is drawn meanwhile.
+            unsafe {
+                let buffer = self.surface().position_buffer();
+                device.cmd_update_buffer(cmd, buffer, 0, bytemuck::cast_slice(positions));
+                device.cmd_pipeline_barrier(cmd, transfer, readers, none, &[barrier], &[], &[]);
+                self.surface().cmd_points(device, cmd, layout, &pipeline);
+            }
+            Ok(())
+        });
+        moved.expect("it is executed");
+        // SAFETY: the submission has been waited for.
+        unsafe { pipeline.destroy(device) };
     }
 
     /// Lets the host give slots, as [`draw`](Self::draw) needs them when they are the host's.

@@ -7,6 +7,7 @@
 mod common;
 
 mod edges;
+mod points;
 mod precision;
 mod ring;
 mod scale;

@@ -7,7 +7,7 @@ use hullform::method::METHODS;
 use crate::common::gpu::{Gpu, SPACINGS, bits, capturing, cut, prepare};
 use crate::shapes;
 
-/// Every method with points, on every triangular shape: a mesh that is moved on the device is drawn like one that was made where it is now.
+/// Every method with points, on built-in shapes cut into triangles: a mesh that is moved on the device is drawn like one that was made where it is now.
 #[test]
 fn device_and_host_compute_points_with_the_same_bits() {
     let Some(gpu) = Gpu::open() else { return };
@@ -15,7 +15,8 @@ fn device_and_host_compute_points_with_the_same_bits() {
     let at = cut(3.0, SPACINGS[0]);
     let mut compared = 0;
     for (name, model) in shapes::triangular() {
-        let small = model.mesh().vertex_count() * 12 <= 65536;
+        // The shared shapes would show nothing more.
+        let small = name.starts_with("builtin") && model.mesh().vertex_count() < 500;
         let scheme = model.mesh().options().scheme;
         for method in METHODS
             .iter()

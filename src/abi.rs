@@ -198,7 +198,7 @@ constants! {
     CHILD_OF_QUAD = 1;
     /// The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
     CHILD_OF_TRIANGLE = 5;
-    /// Flag of a `Place`: the edge runs against the direction of the basis' face.
+    /// Flag of a `TablePlace`: the edge runs against the direction of that face.
     PLACE_FLIPPED = 0x8000_0000;
 
     /// Frame flag: spacing is fractional-even, else equal.
@@ -319,7 +319,7 @@ structs! {
     }
 
     /// A face whose limit is a table of weights: what is summed, and with which weights.
-    Basis {
+    TableFace {
         /// Where the numbers of its points begin.
         controls: u32,
         /// How many points, and weights a row.
@@ -333,9 +333,9 @@ structs! {
     }
 
     /// Where an edge or a vertex is evaluated: on a face that all who share it agree upon.
-    Place {
-        /// The face's basis.
-        basis: u32,
+    TablePlace {
+        /// The face, by its number in the table.
+        face: u32,
         /// The face's own edge or corner, and `PLACE_FLIPPED`.
         side: u32,
     }

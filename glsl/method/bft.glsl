@@ -1,4 +1,4 @@
-// Tables of basis functions (Holländer, Boubekeur 2011). Twin of `method/bft.rs`.
+// Tables of face functions (Holländer, Boubekeur 2011). Twin of `method/bft.rs`.
 #ifndef BFT_GLSL
 #define BFT_GLSL
 
@@ -34,8 +34,8 @@ vec3 patch_point(Patch record, uint number) { return vec3(0.0); }
 #include "lib/lattice.glsl"
 
 layout(set = 0, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
-layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer BasisTable { Basis bases[]; };
-layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer PlaceTable { Place places[]; };
+layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer FaceTable { TableFace faces[]; };
+layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer PlaceTable { TablePlace places[]; };
 
 // Where a point of the patch lies: a corner, an edge from its first corner on, or with neither the inside.
 struct Spot {
@@ -65,17 +65,17 @@ Spot spot(vec2 uv) {
     return found;
 }
 
-// The sum over the basis' points, in their order (equation 1); the same weights for normals are subdivision shading.
-Point summed(Basis basis, Shares shares) {
+// The sum over the face's points, in their order (equation 1); the same weights for normals are subdivision shading.
+Point summed(TableFace face, Shares shares) {
     precise vec3 position = vec3(0.0);
     precise vec3 normal = vec3(0.0);
-    for (uint i = 0u; i < basis.count; ++i) {
+    for (uint i = 0u; i < face.count; ++i) {
         precise float weight = 0.0;
         for (uint k = 0u; k < 4u; ++k) {
             if (shares.shares[k] == 0.0) continue;
-            weight += shares.shares[k] * weights[basis.weights + shares.rows[k] * basis.count + i];
+            weight += shares.shares[k] * weights[face.weights + shares.rows[k] * face.count + i];
         }
-        Point point = points[controls[basis.controls + i]];
+        Point point = points[controls[face.controls + i]];
         position += weight * point.position;
         normal += weight * point.normal;
     }
@@ -86,17 +86,17 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Spot found = spot(uv);
     uint first = record.plan * 2u * CORNERS;
     if (found.corner != NOWHERE) {
-        Place place = places[first + CORNERS + found.corner];
-        return summed(bases[place.basis], Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0)));
+        TablePlace place = places[first + CORNERS + found.corner];
+        return summed(faces[place.face], Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0)));
     }
     if (found.edge != NOWHERE) {
-        Place place = places[first + found.edge];
-        Basis basis = bases[place.basis];
+        TablePlace place = places[first + found.edge];
+        TableFace face = faces[place.face];
         bool flipped = (place.side & PLACE_FLIPPED) != 0u;
-        precise float at = (flipped ? 1.0 - found.along : found.along) * float(basis.segments);
-        return summed(basis, lattice_along(basis, place.side & ~PLACE_FLIPPED, at));
+        precise float at = (flipped ? 1.0 - found.along : found.along) * float(face.segments);
+        return summed(face, lattice_along(face, place.side & ~PLACE_FLIPPED, at));
     }
-    return summed(bases[record.plan], lattice_inside(bases[record.plan], uv));
+    return summed(faces[record.plan], lattice_inside(faces[record.plan], uv));
 }
 #endif
 

@@ -295,7 +295,12 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
         Some(name) => method(name)?,
         None => method_for(model.mesh().options().scheme),
     };
-    let prepared = method.prepare(model, setup.options)?;
+    let prepared = match method.prepare(model, setup.options) {
+        Err(error @ Error::Input { .. }) if may_refuse(model, method) => {
+            return Ok(Finding::skip(error.to_string()));
+        }
+        prepared => prepared?,
+    };
     let passes = prepared.clone();
     let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
     let ruler = Ruler {
@@ -327,10 +332,17 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
     )))
 }
 
+/// Whether a method may refuse a mesh: the one that draws its scheme by default may not.
+pub(super) fn may_refuse(model: &Model, method: &Method) -> bool {
+    method_for(model.mesh().options().scheme).name != method.name
+}
+
 /// How far off a method may be.
 fn within(method: &Method) -> f64 {
     match method.contract.reproduces {
-        Reproduces::Limit(most) | Reproduces::Faces(most) => most,
+        Reproduces::Limit(most) | Reproduces::LimitOnLattice(most) | Reproduces::Faces(most) => {
+            most
+        }
         Reproduces::Itself => 1e-6,
     }
 }
@@ -341,38 +353,39 @@ enum Right {
     Truth(LimitSurface),
     /// The method's own, on the CPU.
     Twin(Controls),
+    /// Positions of the surface in f64 on the pass' lattice, the method's own off it; normals are its own everywhere.
+    Lattice(LimitSurface, Controls),
 }
 
-/// The truth of a method's contract: the limit, or linear faces. A method with a surface of its own, and plain triangles, are held to the
-/// CPU's twin.
+/// The truth of a method's contract: the limit, everywhere or on a lattice, or linear faces. A method with a surface of its own, and plain
+/// triangles, are held to the CPU's twin.
 fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared) -> Result<Right> {
-    let mesh = model.mesh();
-    let scheme = match method.contract.reproduces {
-        Reproduces::Limit(_) => Some(mesh.options().scheme),
-        Reproduces::Faces(_) if mesh.options().scheme == Scheme::CatmullClark => {
-            Some(Scheme::Bilinear)
+    let own = model.mesh().options().scheme;
+    let moved = if context.is_wrong() { 1e-3 } else { 0.0 };
+    let twin = || twin(model, prepared, moved);
+    Ok(match method.contract.reproduces {
+        Reproduces::Limit(_) => Right::Truth(truth(model.mesh(), own, moved)?),
+        Reproduces::LimitOnLattice(_) => Right::Lattice(truth(model.mesh(), own, moved)?, twin()),
+        Reproduces::Faces(_) if own == Scheme::CatmullClark => {
+            Right::Truth(truth(model.mesh(), Scheme::Bilinear, moved)?)
         }
-        Reproduces::Faces(_) | Reproduces::Itself => None,
-    };
-    let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
-    if context.is_wrong() {
-        positions[0][2] += 1e-3 * diagonal(mesh);
-    }
-    Ok(match scheme {
-        Some(scheme) => Right::Truth(LimitSurface::of_scheme(
-            &with_positions(mesh, &positions)?,
-            scheme,
-        )),
-        None => {
-            let mut vertices = model.positions();
-            vertices[0].z += if context.is_wrong() {
-                1e-3 * diagonal(mesh) as f32
-            } else {
-                0.0
-            };
-            Right::Twin(prepared.controls(vertices))
-        }
+        Reproduces::Faces(_) | Reproduces::Itself => Right::Twin(twin()),
     })
+}
+
+/// The surface in f64, with vertex 0 moved by a part of the diagonal.
+fn truth(mesh: &ControlMesh, scheme: Scheme, moved: f64) -> Result<LimitSurface> {
+    let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
+    positions[0][2] += moved * diagonal(mesh);
+    let mesh = with_positions(mesh, &positions)?;
+    Ok(LimitSurface::of_scheme(&mesh, scheme))
+}
+
+/// The same for the CPU's twin.
+fn twin(model: &Model, prepared: &Prepared, moved: f64) -> Controls {
+    let mut vertices = model.positions();
+    vertices[0].z += (moved * diagonal(model.mesh())) as f32;
+    prepared.controls(vertices)
 }
 
 fn diagonal(mesh: &ControlMesh) -> f64 {
@@ -434,10 +447,15 @@ impl Ruler<'_> {
         let uv = to_ptex(&pass.patches[number], vertex.uv);
         let right = match &self.right {
             Right::Truth(truth) => self.of_truth(truth, ptex, uv),
-            Right::Twin(controls) => {
-                let twin = pass.evaluate(controls, number, Vec2::from(vertex.uv));
-                let position = twin.position.as_dvec3() + self.model.centre();
-                Some((position, Some(twin.normal.as_dvec3())))
+            Right::Twin(controls) => Some(self.of_twin(controls, pass, vertex)),
+            Right::Lattice(truth, controls) => {
+                let twin = self.of_twin(controls, pass, vertex);
+                match pass.is_on_lattice(vertex.uv) {
+                    true => self
+                        .of_truth(truth, ptex, uv)
+                        .map(|(position, _)| (position, twin.1)),
+                    false => Some(twin),
+                }
             }
         };
         let Some((position, normal)) = right else {
@@ -459,6 +477,19 @@ impl Ruler<'_> {
             format!("{units:.2} units and {degrees:.4} degrees off at {uv:?} of ptex face {ptex}")
         });
         [units, degrees]
+    }
+
+    /// Position and normal of the CPU's twin.
+    fn of_twin(
+        &self,
+        controls: &Controls,
+        pass: &Pass,
+        vertex: &Captured,
+    ) -> (DVec3, Option<DVec3>) {
+        let number = vertex.patch_number as usize;
+        let twin = pass.evaluate(controls, number, Vec2::from(vertex.uv));
+        let position = twin.position.as_dvec3() + self.model.centre();
+        (position, Some(twin.normal.as_dvec3()))
     }
 
     /// Position and normal of the truth; no normal where the surface folds or stands still: there f32 has none.

@@ -1,4 +1,4 @@
-//! `bft`: tables of basis functions (Holländer, Boubekeur 2011, "Synthesizing Subdivision Meshes using Real Time Tessellation").
+//! `bft`: tables of face functions (Holländer, Boubekeur 2011, "Synthesizing Subdivision Meshes using Real Time Tessellation").
 //!
 //! The mesh is refined once, on the device, which leaves each face one extraordinary vertex at most (section II-B): vertices and normals of that
 //! mesh are [`Points`]. Its faces are the patches. For each configuration of a face with its neighbours there is one table, at the maximum level, of
@@ -18,7 +18,7 @@ mod table;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::abi::{self, Basis, Place};
+use crate::abi::{self, TableFace, TablePlace};
 use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
@@ -36,7 +36,7 @@ use lattice::{Lattice, Shares};
 /// The row of the table.
 pub const METHOD: Method = Method {
     name: "bft",
-    summary: "the limit by tables of basis functions, with subdivision shading",
+    summary: "the limit by tables of face functions, with subdivision shading",
     paper: "Holländer, Boubekeur 2011",
     schemes: &[
         Scheme::Loop,
@@ -198,54 +198,54 @@ fn spot(domain: Domain, uv: Vec2) -> Spot {
 }
 
 fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    let [weights, bases, places] = &pass.tables[..] else {
+    let [weights, faces, places] = &pass.tables[..] else {
         return SurfacePoint::default();
     };
     let weights: &[f32] = bytemuck::cast_slice(weights);
-    let bases: &[Basis] = bytemuck::cast_slice(bases);
-    let places: &[Place] = bytemuck::cast_slice(places);
+    let faces: &[TableFace] = bytemuck::cast_slice(faces);
+    let places: &[TablePlace] = bytemuck::cast_slice(places);
     let corners = pass.domain.corners();
     let record = &pass.patches[patch];
     let place = |number: u32| places[record.plan as usize * 2 * corners + number as usize];
-    let lattice = |basis: u32| Lattice {
-        corners: bases[basis as usize].corners,
-        segments: bases[basis as usize].segments,
+    let lattice = |face: u32| Lattice {
+        corners: faces[face as usize].corners,
+        segments: faces[face as usize].segments,
     };
-    let (basis, shares) = match spot(pass.domain, uv) {
+    let (face, shares) = match spot(pass.domain, uv) {
         Spot::Inside => (record.plan, lattice(record.plan).inside(uv.to_array())),
         Spot::Edge(edge, along) => {
-            let Place { basis, side } = place(edge);
+            let TablePlace { face, side } = place(edge);
             let flipped = side & abi::PLACE_FLIPPED != 0;
             let along = if flipped { 1.0 - along } else { along };
-            let lattice = lattice(basis);
+            let lattice = lattice(face);
             let at = along * lattice.segments as f32;
-            (basis, lattice.along(side & !abi::PLACE_FLIPPED, at))
+            (face, lattice.along(side & !abi::PLACE_FLIPPED, at))
         }
         Spot::Corner(corner) => {
-            let Place { basis, side } = place(corners as u32 + corner);
-            (basis, [(side, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)])
+            let TablePlace { face, side } = place(corners as u32 + corner);
+            (face, [(side, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)])
         }
     };
-    sum(pass, given, weights, bases[basis as usize], shares)
+    sum(pass, given, weights, faces[face as usize], shares)
 }
 
-/// The sum over the basis' points, in their order (equation 1).
+/// The sum over the face' points, in their order (equation 1).
 fn sum(
     pass: &Pass,
     given: &Controls,
     weights: &[f32],
-    basis: Basis,
+    face: TableFace,
     shares: Shares,
 ) -> SurfacePoint {
     let (mut position, mut normal) = (Vec3::ZERO, Vec3::ZERO);
-    for i in 0..basis.count {
+    for i in 0..face.count {
         let weight = shares.iter().fold(0.0, |sum, &(row, share)| {
             if share == 0.0 {
                 return sum;
             }
-            sum + share * weights[(basis.weights + row * basis.count + i) as usize]
+            sum + share * weights[(face.weights + row * face.count + i) as usize]
         });
-        let point = given.points[pass.controls[(basis.controls + i) as usize] as usize];
+        let point = given.points[pass.controls[(face.controls + i) as usize] as usize];
         position += weight * Vec3::from(point.position);
         normal += weight * Vec3::from(point.normal);
     }

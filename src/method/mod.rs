@@ -335,7 +335,11 @@ mod tests {
     #[test]
     fn children_and_turns_lead_to_the_ptex_face_and_back() {
         for child in 0..=8u32 {
-            let turns = if child >= abi::CHILD_OF_TRIANGLE { 3 } else { 4 };
+            let turns = if child >= abi::CHILD_OF_TRIANGLE {
+                3
+            } else {
+                4
+            };
             for turn in 0..turns {
                 let patch = abi::Patch {
                     flags: child << abi::PATCH_CHILD_SHIFT | turn << abi::PATCH_TURN_SHIFT,

@@ -4,8 +4,8 @@
 //! sides of it, which subdivision shading does not have.
 
 use crate::error::{Error, Place, Result};
-use crate::mesh::sharpness::{is_infinite, is_sharp};
 use crate::mesh::Model;
+use crate::mesh::sharpness::{is_infinite, is_sharp};
 use crate::method::method_for;
 
 /// Refuses creases, sharp vertices that are no corners of the boundary, edges of more than two faces, and vertices where several fans meet.

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::abi::{self, Basis, Place};
+use crate::abi::{self, TableFace, TablePlace};
 use crate::mesh::Model;
 use crate::method::bft::lattice::Lattice;
 use crate::method::bft::{Tables, domain, twin};
@@ -20,7 +20,7 @@ pub fn passes(model: &Model, tables: &Tables, max_level: u32) -> [Pass; 2] {
             pass: Pass::new(shader, domain, 1, twin),
             numbers: FxHashMap::default(),
             offsets: FxHashMap::default(),
-            bases: Vec::new(),
+            faces: Vec::new(),
             weights: Vec::new(),
         };
         packer.pass.max_level = max_level;
@@ -52,7 +52,9 @@ fn children(model: &Model) -> Vec<Child> {
         .map(|face| {
             let arity = topology.face(face).len();
             let count = if scheme.is_whole(arity) { 4 } else { arity };
-            std::mem::replace(&mut first, first + count as u32)
+            let own = first;
+            first += count as u32;
+            own
         })
         .collect();
     let parts = patches::parts(model).into_iter().flat_map(|part| {
@@ -96,15 +98,15 @@ impl Owners {
     }
 }
 
-/// A pass as it is filled. Bases of its patches come first, in their order, then those of faces of the other shape that own an edge or vertex.
+/// A pass as it is filled. Faces of its patches come first, in their order, then those of the other shape that own an edge or vertex.
 struct Packer<'a> {
     tables: &'a Tables,
     pass: Pass,
-    /// The basis of each face.
+    /// The number of each face.
     numbers: FxHashMap<u32, u32>,
     /// Where each kind's weights begin.
     offsets: FxHashMap<u32, u32>,
-    bases: Vec<Basis>,
+    faces: Vec<TableFace>,
     weights: Vec<f32>,
 }
 
@@ -113,7 +115,7 @@ impl Packer<'_> {
         let topology = &self.tables.topology;
         let vertices = topology.face(child.face);
         let turn = self.turn(child.face);
-        let plan = self.basis(child.face);
+        let plan = self.number(child.face);
         let valence = |i: usize| {
             let corner = (i + turn as usize) % vertices.len();
             let edges = topology.vertex_edges(vertices[corner]).len();
@@ -125,7 +127,7 @@ impl Packer<'_> {
                 | abi::PATCH_REFINED
                 | turn << abi::PATCH_TURN_SHIFT
                 | child.child << abi::PATCH_CHILD_SHIFT,
-            controls: self.bases[plan as usize].controls,
+            controls: self.faces[plan as usize].controls,
             plan,
             valences: u32::from_le_bytes([0, 1, 2, 3].map(valence)),
         };
@@ -139,8 +141,8 @@ impl Packer<'_> {
         found.map_or(0, |found| found.turn)
     }
 
-    /// The basis of a face, which is added if it is new.
-    fn basis(&mut self, face: u32) -> u32 {
+    /// The number of a face, which is added if it is new.
+    fn number(&mut self, face: u32) -> u32 {
         if let Some(&number) = self.numbers.get(&face) {
             return number;
         }
@@ -155,8 +157,8 @@ impl Packer<'_> {
         let vertices = found.map_or(&[][..], |found| &found.vertices);
         let Lattice { corners, segments } =
             Lattice::new(domain(&self.tables.topology, face), self.tables.level);
-        let number = self.bases.len() as u32;
-        self.bases.push(Basis {
+        let number = self.faces.len() as u32;
+        self.faces.push(TableFace {
             controls: self.pass.controls.len() as u32,
             count: vertices.len() as u32,
             weights,
@@ -169,7 +171,7 @@ impl Packer<'_> {
     }
 
     /// Where a face's edges, then its vertices are evaluated, in the order of the patch's corners.
-    fn places(&mut self, owners: &Owners, face: u32) -> Vec<Place> {
+    fn places(&mut self, owners: &Owners, face: u32) -> Vec<TablePlace> {
         let topology = &self.tables.topology;
         let arity = topology.face(face).len() as u32;
         let turn = self.turn(face);
@@ -190,18 +192,18 @@ impl Packer<'_> {
             .map(|(owner, side, flags)| {
                 let arity = topology.face(owner).len() as u32;
                 let side = (side + arity - self.turn(owner)) % arity;
-                Place {
-                    basis: self.basis(owner),
+                TablePlace {
+                    face: self.number(owner),
                     side: side | flags,
                 }
             })
             .collect()
     }
 
-    fn finish(mut self, places: &[Place]) -> Pass {
+    fn finish(mut self, places: &[TablePlace]) -> Pass {
         self.pass.tables = vec![
             bytemuck::cast_slice(&self.weights).to_vec(),
-            bytemuck::cast_slice(&self.bases).to_vec(),
+            bytemuck::cast_slice(&self.faces).to_vec(),
             bytemuck::cast_slice(places).to_vec(),
         ];
         self.pass

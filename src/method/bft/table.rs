@@ -51,7 +51,8 @@ impl Level {
     /// The configuration itself.
     fn new(topology: &Topology, configuration: &Configuration, corners: u32) -> Level {
         let (topology, vertices) = topology.excerpt(&configuration.faces);
-        let order: FxHashMap<u32, usize> = configuration.vertices.iter().copied().zip(0..).collect();
+        let order: FxHashMap<u32, usize> =
+            configuration.vertices.iter().copied().zip(0..).collect();
         let unit = |vertex: &u32| {
             let mut value = vec![0.0; vertices.len()];
             value[order[vertex]] = 1.0;

@@ -65,11 +65,11 @@ Spot spot(vec2 uv) {
     return found;
 }
 
-// The sum over the face's points, in their order (equation 1); the same weights for normals are subdivision shading.
+// The sum over the face's points (equation 1), from the last to the first; the same weights for normals are subdivision shading.
 Point summed(TableFace face, Shares shares) {
     precise vec3 position = vec3(0.0);
     precise vec3 normal = vec3(0.0);
-    for (uint i = 0u; i < face.count; ++i) {
+    for (uint i = face.count; i-- > 0u;) {
         precise float weight = 0.0;
         for (uint k = 0u; k < 4u; ++k) {
             if (shares.shares[k] == 0.0) continue;

@@ -27,7 +27,7 @@ use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, corner_weights};
 use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::PlanOptions;
-use crate::subdivision::{Mask, Refinement, refine_all, scheme_rings};
+use crate::subdivision::{Blend, Mask, Refinement, refine_all, scheme_rings};
 use crate::tessellation::Domain;
 
 use configuration::{Configuration, configuration};
@@ -83,7 +83,7 @@ fn points(refined: &Topology, masks: &[Mask]) -> Points {
     let mut points = Points::default();
     points.begin(abi::POINTS_BLEND, 0);
     for mask in masks {
-        points.push(Row::Blend(&merged(mask)));
+        points.push(Row::Blend(&ascending(mask)));
     }
     points.begin(abi::POINTS_RING, 0);
     for vertex in 0..refined.vertex_count() as u32 {
@@ -92,15 +92,11 @@ fn points(refined: &Topology, masks: &[Mask]) -> Points {
     points
 }
 
-/// The mask with each vertex once.
-fn merged(mask: &Mask) -> Mask {
-    let mut merged = Mask::new();
-    for &(vertex, weight) in mask {
-        match merged.iter_mut().find(|(known, _)| *known == vertex) {
-            Some((_, sum)) => *sum += weight,
-            None => merged.push((vertex, weight)),
-        }
-    }
+/// The mask with each vertex once, and the greatest weight last: sums of hundreds of terms, at vertices of high valence, keep their last places
+/// so.
+fn ascending(mask: &Mask) -> Mask {
+    let mut merged = Mask::blend(&[(0, 1.0)], std::slice::from_ref(mask));
+    merged.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     merged
 }
 
@@ -229,7 +225,7 @@ fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     sum(pass, given, weights, faces[face as usize], shares)
 }
 
-/// The sum over the face' points, in their order (equation 1).
+/// The sum over the face's points (equation 1), from the last to the first: the face's own vertices weigh most.
 fn sum(
     pass: &Pass,
     given: &Controls,
@@ -238,7 +234,7 @@ fn sum(
     shares: Shares,
 ) -> SurfacePoint {
     let (mut position, mut normal) = (Vec3::ZERO, Vec3::ZERO);
-    for i in 0..face.count {
+    for i in (0..face.count).rev() {
         let weight = shares.iter().fold(0.0, |sum, &(row, share)| {
             if share == 0.0 {
                 return sum;

@@ -228,7 +228,7 @@ fn hold_edges(model: &Model) {
     for pass in &prepared.passes {
         let n = pass.domain.corners();
         for patch in 0..pass.patches.len() {
-            // The face's corners are the first of its basis' points.
+            // The face's corners are the first of its points.
             let first = pass.patches[patch].controls as usize;
             for side in 0..n {
                 let ends = [side, (side + 1) % n].map(|i| pass.controls[first + i]);

@@ -104,6 +104,8 @@ const uint FRAME_FRACTIONAL_EVEN = 1u;
 const uint FRAME_HOST_SLOTS = 2u;
 // Frame flag: the evaluation shader records what it produces.
 const uint FRAME_CAPTURE = 4u;
+// Frame flag: vertices whose position has an odd number of bits are drawn elsewhere, so that cracks show.
+const uint FRAME_PARITY = 8u;
 // Counter: patches that found no room in the ring and were not drawn.
 const uint COUNTER_OVERFLOWS = 0u;
 // Counter: points computed, over all batches.

@@ -43,7 +43,7 @@ void limit(PointRow row, uint number) {
 // Of an open ring there is no face between the last and the first.
 void ring(PointRow row, uint number) {
     uint spokes = (row.count & ~ROW_OPEN) - 1u;
-    uint faces = (row.count & ROW_OPEN) != 0u ? spokes - 1u : spokes;
+    uint faces = (row.count & ROW_OPEN) != 0u ? max(spokes, 1u) - 1u : spokes;
     vec3 middle = points[terms[row.first].source].position;
     precise vec3 normal = vec3(0.0);
     for (uint i = 0u; i < faces; ++i) {

@@ -207,6 +207,8 @@ constants! {
     FRAME_HOST_SLOTS = 2;
     /// Frame flag: the evaluation shader records what it produces.
     FRAME_CAPTURE = 4;
+    /// Frame flag: vertices whose position has an odd number of bits are drawn elsewhere, so that cracks show.
+    FRAME_PARITY = 8;
 
     /// Counter: patches that found no room in the ring and were not drawn.
     COUNTER_OVERFLOWS = 0;

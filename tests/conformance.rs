@@ -12,11 +12,13 @@ use common::cli::{fails, has_device, run, stderr, stdout};
 use serde_json::Value;
 
 /// A part of each group that is quick and whose cases no driver is known to fail.
-const PARTS: [&str; 10] = [
+const PARTS: [&str; 12] = [
     "coordinates.quads-equal.*",
     "coordinates.triangles-fractional_odd.*",
     "limit.valence.boundary-[1-5]",
     "limit.kind.*-equal",
+    "edges.kind.s*-equal",
+    "edges.picture-*.[bc]*-equal",
     "scale.*.draw-1025_patches-*-from_70000",
     "scale.vertices_per_batch.*-1023_patches-*",
     "visibility.coherent.*",
@@ -254,7 +256,11 @@ fn meshes_of_the_user_are_verified() {
     }
     let found = statuses(&["builtin:cube", "builtin:ngons"], 0);
     all_are(&found, "Pass");
-    for start in ["limit.model.cube", "statistics.model.ngons"] {
+    for start in [
+        "limit.model.cube",
+        "edges.model.cube",
+        "statistics.model.ngons",
+    ] {
         assert!(found.keys().any(|name| name.starts_with(start)), "{start}");
     }
     let words = fails(&["verify", "/no/such.obj"], 2);

@@ -10,8 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use common::flow::{Flow, Output};
 use common::spirv::instructions;
+use hullform::abi;
 use hullform::gpu::shaders::{COMPILER, FINGERPRINTS, MODULES};
+use hullform::method::METHODS;
 
 const REMEDY: &str = "run scripts/update-spirv and commit glsl/spirv";
 
@@ -177,4 +180,90 @@ fn seen_from_outside(decoration: u32) -> bool {
     matches!(decoration, SPEC_ID | BUILT_IN | PATCH)
         || LOCATION_AND_COMPONENT.contains(&decoration)
         || BINDING_SET_AND_OFFSET.contains(&decoration)
+}
+
+/// The modules of a stage of all methods that promise the same bits on both sides of an edge.
+fn watertight(stage: &str) -> Vec<(&'static str, &'static [u8])> {
+    let methods = METHODS.iter().filter(|method| method.contract.watertight);
+    let modules = methods.flat_map(|method| {
+        let own = |name: &str| name.starts_with(method.name) && name.ends_with(stage);
+        MODULES.iter().filter(move |(name, _)| own(name))
+    });
+    let modules: Vec<_> = modules.map(|&(name, bytes)| (name, bytes)).collect();
+    assert!(!modules.is_empty(), "no module of stage {stage}");
+    modules
+}
+
+/// Position, normal, and where in the patch, as `glsl/surface.tese` has them. Clip coordinates and texture coordinates are left out: clip
+/// coordinates come of the same instructions for all faces, and nobody compares texture coordinates across edges.
+const EVALUATED: [Output; 4] = [
+    Output::Location(0),
+    Output::Location(1),
+    Output::Location(2),
+    Output::Binding(abi::BINDING_CAPTURE),
+];
+
+/// Tess levels.
+const LEVELS: [Output; 2] = [Output::BuiltIn(11), Output::BuiltIn(12)];
+
+/// Faces on an edge may be drawn by other modules, other pipelines, other inlined copies of a function: what a compiler fuses in one of them
+/// only would be a crack (SPIR-V, NoContraction).
+#[test]
+fn nothing_that_flows_into_positions_normals_and_levels_may_be_contracted() {
+    let mut total = 0;
+    for (name, bytes) in watertight(".tese") {
+        let (count, free) = Flow::of(bytes).contractible(&EVALUATED);
+        assert!(
+            free.is_empty(),
+            "{name}: {} of {count}: {free:?}",
+            free.len()
+        );
+        assert!(count > 100, "{name}: {count}");
+        total += count;
+    }
+    for (name, bytes) in watertight(".tesc") {
+        let points = if name.contains("regular") {
+            Output::Location(2)
+        } else {
+            Output::Binding(abi::BINDING_SCRATCH)
+        };
+        let outputs = [&LEVELS[..], &[points]].concat();
+        let (count, free) = Flow::of(bytes).contractible(&outputs);
+        assert!(
+            free.is_empty(),
+            "{name}: {} of {count}: {free:?}",
+            free.len()
+        );
+        assert!(count > 0, "{name}: {count}");
+        total += count;
+    }
+    println!("{total} instructions");
+}
+
+#[test]
+fn every_instruction_that_may_be_contracted_is_noticed() {
+    const DECORATE: u32 = 71;
+    const NO_CONTRACTION: u32 = 42;
+    let (name, bytes) = watertight(".equal.tese")[0];
+    let (count, _) = Flow::of(bytes).contractible(&EVALUATED);
+    let words = bytes
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+    let mut words: Vec<u32> = words.collect();
+    let (mut at, mut taken) = (5, 0);
+    while at < words.len() {
+        let length = (words[at] >> 16) as usize;
+        if words[at] & 0xffff == DECORATE && words[at + 2] == NO_CONTRACTION {
+            // RelaxedPrecision instead, which says nothing about contraction.
+            words[at + 2] = 0;
+            taken += 1;
+        }
+        at += length;
+    }
+    let (_, free) = Flow::of(bytemuck::cast_slice(&words)).contractible(&EVALUATED);
+    assert!(
+        taken > 100 && free.len() > count / 2 && free.len() <= taken,
+        "{name}: {taken}, {}",
+        free.len()
+    );
 }

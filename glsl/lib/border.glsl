@@ -14,8 +14,9 @@ struct Place {
 
 // t and 1 - t, exchanged if `backwards`. The smaller of both is exact: so both directions have the same pair.
 vec2 turned_round(float t, bool backwards) {
-    float small = t > 0.5 ? 1.0 - t : t;
-    vec2 pair = vec2(small, 1.0 - small);
+    precise float other = 1.0 - t;
+    float small = t > 0.5 ? other : t;
+    precise vec2 pair = vec2(small, 1.0 - small);
     return (t > 0.5) != backwards ? pair.yx : pair;
 }
 
@@ -34,7 +35,7 @@ Place find_place(uint flags, vec2 uv) {
 
 // From along a patch's edge to along the whole edge in its own direction.
 float on_edge(uint flags, vec2 along) {
-    vec2 whole = along;
+    precise vec2 whole = along;
     if ((flags & USE_FIRST_HALF) != 0u) whole = vec2(0.5 * along.x, 0.5 + 0.5 * along.y);
     if ((flags & USE_SECOND_HALF) != 0u) whole = vec2(0.5 + 0.5 * along.x, 0.5 * along.y);
     return (flags & USE_FLIPPED) != 0u ? whole.y : whole.x;

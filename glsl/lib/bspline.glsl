@@ -18,7 +18,10 @@ Basis bspline_basis_of(float t, float s) {
     return Basis(value, derivative);
 }
 
-Basis bspline_basis(float t) { return bspline_basis_of(t, 1.0 - t); }
+Basis bspline_basis(float t) {
+    precise float s = 1.0 - t;
+    return bspline_basis_of(t, s);
+}
 
 // Sum of four weighted points, the same bits from either end: on edges and at corners one of the outer weights is zero, and the others are
 // symmetric about the second or third point.

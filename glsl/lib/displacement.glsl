@@ -1,4 +1,5 @@
-// A procedural displacement along the normal, to show that it opens no cracks. Twin of `method::Displacement`.
+// A procedural displacement along the normal, to show that it opens no cracks, the twin of `method::Displacement`; and one that makes cracks
+// visible.
 #ifndef DISPLACEMENT_GLSL
 #define DISPLACEMENT_GLSL
 
@@ -28,6 +29,14 @@ void displace(inout vec3 position, inout vec3 normal) {
     precise vec3 tilted = normal - (gradient - along * normal);
     position = moved;
     normal = normalize_or_zero(tilted);
+}
+
+// The crack amplifier of VK-GL-CTS: where the bits of a position are odd in number, the vertex moves by a fiftieth of the picture. If faces
+// differ by a single bit somewhere on an edge, a hole opens there that one can see.
+vec4 amplified(vec4 clip, vec3 position) {
+    uvec3 bits = floatBitsToUint(position);
+    bool odd = (bitCount(bits.x ^ bits.y ^ bits.z) & 1) != 0;
+    return odd ? clip + vec4(0.04, 0.04, 0.0, 0.0) * clip.w : clip;
 }
 
 #endif

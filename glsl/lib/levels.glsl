@@ -15,9 +15,9 @@ struct Levels {
 Levels patch_levels(Patch record) {
     float level = clamp(frame.level, 1.0, 64.0);
     bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
-    float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
+    precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
     if ((record.flags & PATCH_HALF) != 0u) return Levels(vec4(half_level), half_level);
-    vec4 edges;
+    precise vec4 edges;
     for (uint i = 0u; i < 4u; ++i) {
         bool even = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u;
         edges[i] = even ? 2.0 * half_level : level;
@@ -34,7 +34,10 @@ uint required_level(Levels levels) {
 }
 
 // Vertex i of n on an edge, in steps of 2^-16; the steps from the other end are the same.
-float step_of(uint i, uint n) { return float((i * 65536u + n / 2u) / n) / 65536.0; }
+float step_of(uint i, uint n) {
+    precise float t = float((i * 65536u + n / 2u) / n) / 65536.0;
+    return t;
+}
 
 #ifdef TRIANGLES
 // (u, v) of a triangle's point, from its barycentric coordinates: corner 0 is (0, 0), 1 is (1, 0), 2 is (0, 1). On edges they are whole steps
@@ -59,9 +62,10 @@ vec2 shared_coordinates(Patch record, Levels levels, vec3 coordinates) {
     float along = on.y ? uv.x : uv.y;
     uint segments = uint(levels.edges[edge]);
     uint half_segments = part ? segments : segments / 2u;
-    uint i = uint(along * float(segments) + 0.5);
+    precise float steps = along * float(segments) + 0.5;
+    uint i = uint(steps);
     bool second = i > half_segments;
-    float t = step_of(second ? i - half_segments : i, half_segments);
+    precise float t = step_of(second ? i - half_segments : i, half_segments);
     if (!part) t = second ? 0.5 + 0.5 * t : 0.5 * t;
     return on.y ? vec2(t, uv.y) : vec2(uv.x, t);
 }

@@ -28,24 +28,28 @@ struct Leaf {
 // Levels around an extraordinary vertex: the level is floor(-log2) of the larger distance from it, read off the float's exponent.
 Leaf terminal_leaf(uint points, uint corner, uint levels, vec2 uv, float scale) {
     bvec2 at = bvec2(corner == 1u || corner == 2u, corner >= 2u);
-    vec2 from_corner = mix(uv, 1.0 - uv, at);
+    precise vec2 other = 1.0 - uv;
+    vec2 from_corner = mix(uv, other, at);
     uint exponent = floatBitsToUint(max(from_corner.x, from_corner.y)) >> 23u;
     uint level = 126u - min(exponent, 126u);
     if (level >= levels) return Leaf(0u, 4u, vec2(0.0), scale, corner, 0.0, NODE_EXTRAORDINARY);
     float grown = power_of_two(int(level));
-    vec2 local = from_corner * grown;
+    precise vec2 local = from_corner * grown;
     bvec2 child = notEqual(greaterThanEqual(local, vec2(0.5)), at);
-    local = 2.0 * mix(local, 1.0 - local, at) - vec2(child);
+    precise vec2 beyond = 1.0 - local;
+    precise vec2 inside = 2.0 * mix(local, beyond, at) - vec2(child);
+    precise float whole = scale * grown * 2.0;
     uint first = points + TERMINAL_POINTS * level + uint(child.x) + 5u * uint(child.y);
-    return Leaf(first, 5u, local, scale * grown * 2.0, 0u, 0.0, NODE_TERMINAL);
+    return Leaf(first, 5u, inside, whole, 0u, 0.0, NODE_TERMINAL);
 }
 
 // The tree of an edge is walked along v = 0.
-Leaf find_leaf(uint root, vec2 uv) {
+Leaf find_leaf(uint root, vec2 from) {
+    precise vec2 uv = from;
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     bvec2 upper = greaterThanEqual(uv, vec2(0.5));
     Node node = nodes[root];
-    float scale = 1.0;
+    precise float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
     for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (node.kind & 15u) == NODE_INTERNAL; ++depth) {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);

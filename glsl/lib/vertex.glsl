@@ -44,6 +44,7 @@ void write_vertex(Patch record, uint number, vec2 uv, Point point) {
     out_texture = texture_coordinates(number, uv);
     out_patch = number;
     gl_Position = frame.view_projection * vec4(point.position, 1.0);
+    if ((frame.flags & FRAME_PARITY) != 0u) gl_Position = amplified(gl_Position, point.position);
     if ((frame.flags & FRAME_CAPTURE) != 0u) capture(number, uv, point);
 }
 

@@ -142,7 +142,9 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
     precise vec3 position = surface.position + head.xyz;
-    return surface_point(Surface(position, scale * surface.du, scale * surface.dv));
+    precise vec3 du = scale * surface.du;
+    precise vec3 dv = scale * surface.dv;
+    return surface_point(Surface(position, du, dv));
 }
 #endif
 

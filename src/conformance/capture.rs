@@ -19,7 +19,7 @@ use crate::plan::PlanOptions;
 use crate::tessellation::Spacing;
 
 /// The side of the picture that surfaces are drawn into.
-const SIDE: u32 = 64;
+pub const SIDE: u32 = 256;
 
 /// The most vertices that are captured in one submission: 36 MB.
 const MOST_CAPTURED: u32 = 1_000_000;
@@ -79,7 +79,7 @@ impl Bench {
         let mut loaded = Loaded {
             bench: self,
             options,
-            reach: reach(model),
+            view: from_the_side(reach(model)),
             surface: Some(surface?),
         };
         self.device.submit(|cmd| {
@@ -184,11 +184,28 @@ fn reach(model: &Model) -> f32 {
     2.0 * farthest.fold(1e-30, f32::max)
 }
 
+/// A view of everything within `reach` of the middle.
+fn from_the_side(reach: f32) -> View {
+    let scale = 0.99 / reach;
+    View {
+        clip_from_model: [
+            [scale, 0.0, 0.0, 0.0],
+            [0.0, -scale, 0.0, 0.0],
+            [0.0, 0.0, -0.5 * scale, 0.0],
+            [0.0, 0.0, 0.5, 1.0],
+        ],
+        eye: [0.0, 0.0, 10.0 * reach],
+        shading: abi::SHADING_PATCH,
+        displacement: Displacement::default(),
+    }
+}
+
 /// A model on the device.
 pub struct Loaded<'a> {
     bench: &'a Bench,
     options: SurfaceOptions,
-    reach: f32,
+    /// What pictures show: from the side, everything within the picture and its depth.
+    pub view: View,
     surface: Option<TessellatedSurface>,
 }
 
@@ -320,24 +337,39 @@ impl Loaded<'_> {
                     ring::cmd_ring_barrier(device, cmd);
                 }
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, &self.view(), cut, batch);
+                    .cmd_draw(device, cmd, layout, pipelines, &self.view, cut, batch);
             }
         }
     }
 
-    /// From the side, everything within the picture and its depth.
-    fn view(&self) -> View {
-        let scale = 0.99 / self.reach;
-        View {
-            clip_from_model: [
-                [scale, 0.0, 0.0, 0.0],
-                [0.0, -scale, 0.0, 0.0],
-                [0.0, 0.0, -0.5 * scale, 0.0],
-                [0.0, 0.0, 0.5, 1.0],
-            ],
-            eye: [0.0, 0.0, 10.0 * self.reach],
-            shading: abi::SHADING_PATCH,
-            displacement: Displacement::default(),
+    /// Draws everything at a cut into one picture: the alpha of its pixels, 0 where nothing is.
+    pub fn picture(&mut self, cut: Cut) -> Result<Vec<u8>> {
+        let batches = self.surface().batches(cut)?;
+        let surface = self.surface.as_mut().expect("there from load to drop");
+        surface.write_slots(cut, &batches);
+        let Bench { device, target, .. } = self.bench;
+        let (raw, prepared) = (device.raw(), self.prepared());
+        self.bench
+            .with_pipelines(prepared, cut.spacing, Fill::Solid, |pipelines| {
+                // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+                device.submit(|cmd| unsafe {
+                    self.surface().cmd_prepare(raw, cmd);
+                    target.begin(cmd, [0.0; 4]);
+                    self.cmd_draws(cmd, pipelines, cut, &batches);
+                    target.end(cmd);
+                    self.surface().cmd_read_back(raw, cmd);
+                    target.cmd_copy_to_host(cmd);
+                    Ok(())
+                })
+            })?;
+        match self.surface().counters().overflows {
+            0 => Ok(target
+                .read_pixels()
+                .into_iter()
+                .skip(3)
+                .step_by(4)
+                .collect()),
+            patches => Err(Error::Refused(format!("{patches} patches were left out"))),
         }
     }
 

@@ -20,7 +20,7 @@ pub const GROUP: Group = Group {
 };
 
 /// A patch an instance, as no known driver needs it.
-static ONE_A_TIME: Workaround = Workaround {
+pub(super) static ONE_A_TIME: Workaround = Workaround {
     remedy: Remedy::SplitBatches { max_vertices: 1 },
     name: "one-a-time",
     ..workaround::WORKAROUNDS[0]
@@ -210,7 +210,7 @@ fn ring(
 }
 
 /// A ring for exactly the hungriest patch.
-fn smallest_ring(prepared: &Prepared, cut: Cut) -> u64 {
+pub(super) fn smallest_ring(prepared: &Prepared, cut: Cut) -> u64 {
     let passes = prepared.passes.iter();
     let points = passes
         .flat_map(|pass| (0..pass.patches.len()).map(move |patch| cut.points(pass, patch)))
@@ -219,7 +219,7 @@ fn smallest_ring(prepared: &Prepared, cut: Cut) -> u64 {
 }
 
 /// A ring for everything at once.
-fn whole_ring(prepared: &Prepared, cut: Cut) -> u64 {
+pub(super) fn whole_ring(prepared: &Prepared, cut: Cut) -> u64 {
     let points = over_patches(prepared, |pass, patch| {
         cut.points(&prepared.passes[pass], patch)
     });

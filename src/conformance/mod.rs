@@ -15,6 +15,7 @@ mod case;
 mod context;
 mod coordinates;
 mod determinism;
+pub mod edges;
 mod expectations;
 mod limit;
 mod meshes;

@@ -3,7 +3,7 @@
 use glob::Pattern;
 
 use crate::conformance::{
-    Case, coordinates, determinism, limit, robustness, scale, statistics, visibility,
+    Case, coordinates, determinism, edges, limit, robustness, scale, statistics, visibility,
 };
 use crate::error::{Error, Result};
 
@@ -24,6 +24,7 @@ pub struct Group {
 pub const GROUPS: &[Group] = &[
     coordinates::GROUP,
     limit::GROUP,
+    edges::GROUP,
     scale::GROUP,
     visibility::GROUP,
     determinism::GROUP,

@@ -1,5 +1,6 @@
 //! Batches: runs of patches that fit into the scratch ring together, and into whatever else bounds a draw.
 
+use crate::abi;
 use crate::error::{Error, Result};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::{Levels, Spacing, levels, required_level};
@@ -27,7 +28,8 @@ impl Cut {
 
     /// The points that a patch needs in the ring.
     pub fn points(&self, pass: &Pass, patch: usize) -> u32 {
-        let level = required_level(&self.levels(pass, patch), pass.max_level);
+        // As the control shader has it: beside an n-gon the level may be more than what a plan of one level serves.
+        let level = required_level(&self.levels(pass, patch), abi::HIGHEST_LEVEL);
         pass.points(patch, level)
     }
 

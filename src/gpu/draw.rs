@@ -216,7 +216,8 @@ impl TessellatedSurface {
                 cut.spacing == Spacing::FractionalEven,
                 abi::FRAME_FRACTIONAL_EVEN,
             ) | flag(self.options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
-                | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE),
+                | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE)
+                | flag(self.options.amplify_cracks, abi::FRAME_PARITY),
             first_patch: draw.first,
             end_patch: batch.end,
             patches_per_instance: draw.patches_per_instance,

@@ -43,6 +43,9 @@ pub struct SurfaceOptions {
     /// allows no such barrier: before each batch that [waits](Batch::waits) the engine then ends rendering, records
     /// [`cmd_ring_barrier`](super::ring::cmd_ring_barrier) with whatever its attachments need, and begins again with `LOAD`.
     pub barriers: bool,
+    /// For tests: draws each vertex whose position has an odd number of bits a fiftieth of the picture away. Where faces differ on an edge by a
+    /// single bit, a hole opens that one can see. What is captured stays as it is.
+    pub amplify_cracks: bool,
 }
 
 impl Default for SurfaceOptions {
@@ -55,6 +58,7 @@ impl Default for SurfaceOptions {
             rounds: 1,
             greatest_level: 64.0,
             barriers: true,
+            amplify_cracks: false,
         }
     }
 }

@@ -135,7 +135,9 @@ impl Points {
                     .iter()
                     .map(|term| position(term) - middle)
                     .collect();
-                let faces = spokes.len() - usize::from(row.count & abi::ROW_OPEN != 0);
+                let faces = spokes
+                    .len()
+                    .saturating_sub(usize::from(row.count & abi::ROW_OPEN != 0));
                 let normal = (0..faces).fold(Vec3::ZERO, |sum, i| {
                     sum + spokes[i].cross(spokes[(i + 1) % spokes.len()])
                 });

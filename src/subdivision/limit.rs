@@ -124,22 +124,13 @@ pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlan
     }
 }
 
-/// The lowest face of those that share the tangent plane of the limit at `corner` of `face` with it. A semi-sharp feature has no say: it is
-/// gone in the limit.
-pub fn shared_tangent_plane(topology: &Topology, face: u32, corner: u32) -> u32 {
+/// Whether the limit has a cusp at `corner` of `face`: each face of the [`fan`](Topology::fan) has a tangent plane of its own. A semi-sharp feature
+/// has no say: it is gone in the limit.
+pub fn is_cusp(topology: &Topology, face: u32, corner: u32) -> bool {
     let vertex = topology.face(face)[corner as usize];
     let infinite = topology.sharp_edges(vertex);
-    let infinite = infinite
-        .filter(|&edge| is_infinite(topology.edge(edge).sharpness))
-        .count();
-    let fan = topology.fan(face, corner);
-    let cusp = is_infinite(topology.vertex_sharpness(vertex)) || infinite > 2;
-    if cusp
-        || tangent_plane(topology, face, corner) == TangentPlane::Face(face) && fan.faces.len() == 1
-    {
-        return face;
-    }
-    fan.faces.iter().copied().min().unwrap_or(face)
+    let infinite = infinite.filter(|&edge| is_infinite(topology.edge(edge).sharpness));
+    is_infinite(topology.vertex_sharpness(vertex)) || infinite.count() > 2
 }
 
 impl LimitStencil {

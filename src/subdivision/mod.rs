@@ -16,7 +16,7 @@ pub use crate::mesh::Scheme;
 pub use box_patch::box_spline_patch;
 pub use curve::{EdgeCurve, edge_curve};
 pub use deep::deep_limit;
-pub use limit::{LimitStencil, TangentPlane, limit_stencil, shared_tangent_plane, tangent_plane};
+pub use limit::{LimitStencil, TangentPlane, is_cusp, limit_stencil, tangent_plane};
 pub use limit_surface::{LimitSample, LimitSurface};
 pub use masks::{Blend, Mask, edge_point, face_point, vertex_point};
 pub use refine::{Refinement, refine, refine_edge};

@@ -3,7 +3,7 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod edges;
+pub mod flow;
 #[cfg(feature = "host")]
 pub mod gpu;
 pub mod meshes;

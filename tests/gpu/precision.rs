@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use hullform::abi::Captured;
 use hullform::mesh::Model;
-use hullform::method::{Method, Pass, Prepared, to_ptex};
+use hullform::method::{Method, Pass, Prepared, Reproduces, to_ptex};
 use hullform::subdivision::{LimitSurface, Scheme};
 
 use crate::common;
@@ -50,9 +50,14 @@ pub fn from_truth(
     frame: &Frame,
     step: usize,
 ) -> Worst {
-    let scheme = match method.contract.limit {
-        Some(_) => Scheme::CatmullClark,
-        None => Scheme::Bilinear,
+    let own = model.mesh().options().scheme;
+    let scheme = match method.contract.reproduces {
+        Reproduces::Limit(_) => own,
+        Reproduces::Faces(_) if own == Scheme::CatmullClark => Scheme::Bilinear,
+        // No truth in f64: the twin will do.
+        Reproduces::Faces(_) | Reproduces::Itself => {
+            return from_twin(model, prepared, frame, step);
+        }
     };
     let truth = LimitSurface::of_scheme(model.mesh(), scheme);
     let diagonal = common::diagonal(model.mesh());
@@ -63,7 +68,7 @@ pub fn from_truth(
         let sample = truth.evaluate(patch.ptex as usize, u, v);
         let sample = sample.expect("holes are not drawn");
         let position = Vec3::from(vertex.position).as_dvec3() + model.centre();
-        let angle = degrees(vertex.normal, sample.normal);
+        let angle = degrees(vertex.normal, sample.normal());
         worst.add(position.distance(sample.position) / diagonal, angle);
     }
     worst

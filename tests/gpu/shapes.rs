@@ -1,6 +1,6 @@
 //! Meshes to test with.
 
-use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
+use hullform::mesh::{ControlMesh, Model, Scheme, Triangulation, builtin, read_obj, triangulated};
 
 use crate::common;
 
@@ -35,6 +35,28 @@ pub fn catmark() -> Vec<(String, Model)> {
 pub fn all() -> Vec<(String, Model)> {
     let own = BUILTINS.map(|name| (format!("builtin:{name}"), built_in(name)));
     own.into_iter().chain(catmark()).collect()
+}
+
+/// The built-in shapes cut into triangles, and the shared ones that are made of triangles, under Loop's scheme and, where it knows their tags,
+/// the butterfly's.
+pub fn triangular() -> Vec<(String, Model)> {
+    let own = BUILTINS.map(|name| (format!("builtin:{name}"), builtin(name).expect("built in")));
+    let shared = common::obj_files("shapes").into_iter().filter_map(|file| {
+        let name = common::stem(&file);
+        Some((name, read_obj(&file).ok()?)).filter(|(name, _)| name.starts_with("loop"))
+    });
+    let under = |(name, mesh): (String, ControlMesh)| {
+        let cut = triangulated(&mesh, Triangulation::default()).expect("a sound mesh");
+        [Scheme::Loop, Scheme::Butterfly].map(|scheme| {
+            let mesh = cut.clone().with_scheme(scheme).ok()?;
+            Some((format!("{name} {scheme}"), Model::new(mesh)))
+        })
+    };
+    own.into_iter()
+        .chain(shared)
+        .flat_map(under)
+        .flatten()
+        .collect()
 }
 
 /// A torus of quads without tags: nothing but regular faces.

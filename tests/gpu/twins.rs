@@ -2,7 +2,7 @@
 
 use hullform::gpu::{Cut, Fill};
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Method};
+use hullform::method::{METHODS, Method, Reproduces};
 use hullform::tessellation::Spacing;
 
 use crate::common;
@@ -37,6 +37,14 @@ fn each_cut(
     }
 }
 
+/// The methods that do the model's scheme.
+fn able(model: &Model) -> impl Iterator<Item = &'static Method> {
+    let scheme = model.mesh().options().scheme;
+    METHODS
+        .iter()
+        .filter(move |method| method.check(scheme).is_ok())
+}
+
 fn assert_near(what: &str, worst: Worst, position: f64, normal: f64) {
     println!(
         "{what:40} {:.1e} of the diagonal, {:.1e} degrees",
@@ -51,14 +59,14 @@ fn assert_near(what: &str, worst: Worst, position: f64, normal: f64) {
 #[test]
 fn captured_vertices_are_those_of_the_twins() {
     let Some(gpu) = Gpu::open() else { return };
-    for (name, model) in shapes::all() {
+    for (name, model) in shapes::all().into_iter().chain(shapes::triangular()) {
         let levels = [1.0, 2.0, 3.0, 5.0, 8.0, 13.0];
         let small = model.mesh().face_count() <= 8;
         let levels = levels.iter().chain(small.then_some(&64.0));
         let cuts: Vec<Cut> = levels
             .flat_map(|&level| SPACINGS.map(|spacing| cut(level, spacing)))
             .collect();
-        for method in METHODS {
+        for method in able(&model) {
             let mut worst = Worst::default();
             each_cut(&gpu, &model, method, &cuts, |cut, prepared, frame| {
                 let step = ((vertices(prepared, cut) / 2000) | 1) as usize;
@@ -107,7 +115,7 @@ fn captured_vertices_keep_the_contract() {
     let Some(gpu) = Gpu::open() else { return };
     let cuts = [cut(8.0, Spacing::Equal), cut(5.0, Spacing::FractionalEven)];
     for (name, model) in shapes::all() {
-        for method in METHODS {
+        for method in able(&model) {
             let mut worst = Worst::default();
             each_cut(&gpu, &model, method, &cuts, |cut, prepared, frame| {
                 let step = ((vertices(prepared, cut) / 400) | 1) as usize;
@@ -121,7 +129,10 @@ fn captured_vertices_keep_the_contract() {
 }
 
 fn limit(method: &Method) -> f64 {
-    method.contract.limit.unwrap_or(1e-6)
+    match method.contract.reproduces {
+        Reproduces::Limit(most) | Reproduces::Faces(most) => most,
+        Reproduces::Itself => 1e-6,
+    }
 }
 
 fn normals(method: &Method) -> f64 {
@@ -161,7 +172,7 @@ fn a_small_mesh_far_from_the_origin_loses_nothing() {
         let scale = 0.1 / common::diagonal(near.mesh());
         let far = shapes::moved(near.mesh(), scale, [1000.0, -1000.0, 1000.0]);
         let model = Model::new(far);
-        for method in METHODS {
+        for method in able(&model) {
             let cuts = [cut(8.0, Spacing::Equal)];
             each_cut(&gpu, &model, method, &cuts, |_, prepared, frame| {
                 let worst = from_truth(&model, method, prepared, frame, 7);

@@ -1,22 +1,33 @@
 //! What the driver counts, against what was predicted.
 
 use hullform::gpu::{Cut, Fill};
-use hullform::mesh::{Model, builtin};
+use hullform::mesh::{ControlMesh, Model, Scheme, Triangulation, builtin, triangulated};
 use hullform::method::METHODS;
 
 use crate::common::gpu::{Gpu, Loaded, SPACINGS, capturing, cut, over_patches, prepare, vertices};
 use crate::shapes;
 
-/// One patch a quad, one a corner of an n-gon; none in holes.
+/// One patch a face that the scheme takes whole, one a corner of other faces; none in holes.
 fn patches(model: &Model) -> u64 {
+    let scheme = model.mesh().options().scheme;
     let faces = model.mesh().faces().enumerate();
     let drawn = faces.filter(|&(face, _)| !model.topology().is_hole(face as u32));
     drawn
         .map(|(_, vertices)| match vertices.len() {
-            4 => 1,
+            n if scheme.is_whole(n) => 1,
             n => n as u64,
         })
         .sum()
+}
+
+/// A mesh under a scheme, cut into triangles if that takes no others.
+fn under(mesh: ControlMesh, scheme: Scheme) -> Model {
+    let mesh = if scheme.is_triangular() {
+        triangulated(&mesh, Triangulation::default()).expect("a sound mesh")
+    } else {
+        mesh
+    };
+    Model::new(mesh.with_scheme(scheme).expect("the scheme knows its tags"))
 }
 
 /// Draws at a cut and compares patches, evaluations, triangles and points with their prediction.
@@ -53,8 +64,9 @@ fn the_drivers_counts_are_the_predicted_ones() {
     let levels = [1.0, 2.0, 3.0, 4.0, 7.0, 16.0];
     let cuts = levels.map(|level| SPACINGS.map(|spacing| cut(level, spacing)));
     for name in ["cube", "ngons", "sheet", "creased-torus", "hull", "pole-64"] {
-        let model = shapes::built_in(name);
+        let whole = shapes::built_in(name);
         for method in METHODS {
+            let model = under(whole.mesh().clone(), method.schemes[0]);
             let prepared = prepare(&model, method.name);
             let options = capturing(&prepared, cuts.as_flattened());
             let loaded = gpu.load(&model, prepared, workarounds, options);
@@ -105,9 +117,10 @@ fn holes_are_not_drawn() {
     let faces: Vec<u32> = whole.faces().flatten().copied().collect();
     let positions: Vec<[f64; 3]> = whole.positions().iter().map(|p| p.to_array()).collect();
     let mesh = hullform::mesh::ControlMesh::builder(&positions, &sizes, &faces).hole(3);
-    let model = Model::new(mesh.build().expect("a cube with a hole is sound"));
+    let mesh = mesh.build().expect("a cube with a hole is sound");
     let at = cut(4.0, SPACINGS[0]);
     for method in METHODS {
+        let model = under(mesh.clone(), method.schemes[0]);
         let prepared = prepare(&model, method.name);
         let options = capturing(&prepared, &[at]);
         let loaded = gpu.load(&model, prepared, &gpu.device.info().workarounds, options);
@@ -119,7 +132,14 @@ fn holes_are_not_drawn() {
             .iter()
             .map(|vertex| patches[vertex.patch_number as usize].ptex);
         let faces: std::collections::BTreeSet<u32> = faces.collect();
-        assert_eq!(faces.into_iter().collect::<Vec<_>>(), [0, 1, 2, 4, 5]);
+        // A face of the cube is two triangles where the scheme takes nothing else.
+        let parts = (model.mesh().face_count() / 6) as u32;
+        let faces: Vec<u32> = faces.into_iter().map(|face| face / parts).collect();
+        let drawn: Vec<u32> = [0, 1, 2, 4, 5]
+            .iter()
+            .flat_map(|&f| vec![f; parts as usize])
+            .collect();
+        assert_eq!(faces, drawn);
     }
     gpu.finish();
 }

@@ -11,6 +11,8 @@ use crate::mesh::{
 pub struct Draft {
     parts: Parts,
     random: Random,
+    /// Whether edges may get more than two faces, or two in the same direction.
+    wild: bool,
 }
 
 impl Draft {
@@ -19,9 +21,22 @@ impl Draft {
     /// # Errors
     /// None, unless this file is wrong: strokes leave a sound mesh.
     pub fn random(random: Random) -> Result<ControlMesh> {
+        Draft::drawn(random, true)
+    }
+
+    /// A random mesh whose edges have two faces at most, which agree in orientation.
+    ///
+    /// # Errors
+    /// As [`random`](Self::random).
+    pub fn manifold(random: Random) -> Result<ControlMesh> {
+        Draft::drawn(random, false)
+    }
+
+    fn drawn(random: Random, wild: bool) -> Result<ControlMesh> {
         let mut draft = Draft {
             parts: Parts::default(),
             random,
+            wild,
         };
         draft.parts = sheet(2 + draft.random.below(3)).scattered(0.2);
         for _ in 0..draft.random.below(7) {
@@ -41,8 +56,8 @@ impl Draft {
             2 => self.rays(face),
             3 => self.lens(face),
             4 if self.parts.faces.len() > 3 => drop(self.parts.faces.remove(face)),
-            5 => self.parts.faces[face].reverse(),
-            6 => self.fin(face),
+            5 if self.wild => self.parts.faces[face].reverse(),
+            6 if self.wild => self.fin(face),
             _ => self.merge(face),
         }
     }
@@ -199,6 +214,18 @@ impl Draft {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Model;
+
+    #[test]
+    fn manifold_meshes_have_two_faces_an_edge_at_most() {
+        for seed in 0..100 {
+            let mesh = Draft::manifold(Random::new(seed, "draft"));
+            let model = Model::new(mesh.unwrap_or_else(|error| panic!("seed {seed}: {error}")));
+            let topology = model.topology();
+            let mut edges = 0..topology.edge_count() as u32;
+            assert!(edges.all(|edge| topology.edge_faces(edge).len() <= 2));
+        }
+    }
 
     #[test]
     fn strokes_leave_sound_meshes_and_all_kinds_of_faces() {

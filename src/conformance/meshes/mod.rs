@@ -157,6 +157,52 @@ pub fn cornered_sheet(sharpness: f32) -> Result<ControlMesh> {
     sheet(4).tagged(|builder| builder.corner(2 + 5 * 2, sharpness))
 }
 
+/// Quads, triangles, pentagons and hexagons with creases of all kinds between them.
+pub fn creased_polygons() -> Result<ControlMesh> {
+    let mut parts = sheet(6);
+    for face in [14, 15, 27] {
+        split(&mut parts, face);
+    }
+    for edge in [[24, 31], [16, 23]] {
+        merge(&mut parts, edge);
+    }
+    let rows = [(14, 10.0), (21, 2.5), (28, 0.7)];
+    parts.tagged(|builder| {
+        let edges = rows
+            .into_iter()
+            .flat_map(|(first, s)| (1..5).map(move |x| (first + x, s)));
+        edges.fold(builder, |builder, (a, s)| builder.crease(a, a + 1, s))
+    })
+}
+
+/// Cuts a quad in two triangles.
+fn split(parts: &mut Parts, face: usize) {
+    let [a, b, c, d] = parts.faces[face][..] else {
+        return;
+    };
+    parts.faces[face] = vec![a, b, c];
+    parts.faces.push(vec![a, c, d]);
+}
+
+/// Joins the two faces on an edge.
+fn merge(parts: &mut Parts, [a, b]: [u32; 2]) {
+    let starts = |face: &[u32], a, b| {
+        (0..face.len()).find(|&i| face[i] == a && face[(i + 1) % face.len()] == b)
+    };
+    let mut joined = Vec::new();
+    for (from, to) in [(a, b), (b, a)] {
+        let found =
+            (0..parts.faces.len()).find_map(|f| Some((f, starts(&parts.faces[f], from, to)?)));
+        let (face, at) = found.expect("two faces have the edge");
+        let mut vertices = parts.faces.remove(face);
+        vertices.rotate_left(at + 1);
+        // From the edge's end all the way round to just before it.
+        vertices.pop();
+        joined.extend(vertices);
+    }
+    parts.faces.push(joined);
+}
+
 /// A mesh with other positions, its faces and tags as before.
 pub fn with_positions(mesh: &ControlMesh, positions: &[[f64; 3]]) -> Result<ControlMesh> {
     let parts = Parts {

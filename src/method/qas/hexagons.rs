@@ -8,20 +8,31 @@ use crate::abi;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
-use crate::subdivision::{
-    Blend, LimitStencil, Mask, Refinement, deep_limit, refine_all, shared_tangent_plane,
-};
+use crate::subdivision::{Blend, LimitStencil, Mask, Refinement, deep_limit, is_cusp, refine_all};
 
-/// The points of all hexagons. One a vertex of the refined mesh, more where faces there have different tangent planes.
+/// The points of all hexagons. One a vertex of the refined mesh, more where infinite creases part its faces into sectors. At a cusp, where each
+/// face has a tangent plane of its own, a sector has the mean of their normals: so normals agree along its smooth edges.
 pub struct Hexagons {
     /// How they are computed.
     pub points: Points,
     refined: Topology,
-    /// Points by vertex of the refined mesh and by the face that stands for those of its tangent plane.
+    /// Points by vertex of the refined mesh and lowest face of the sector.
     numbers: FxHashMap<(u32, u32), u32>,
     /// How many points a vertex of the refined mesh has.
     counts: Vec<u32>,
 }
+
+/// What a point stands for.
+struct Place {
+    vertex: u32,
+    /// The lowest face of its sector.
+    face: u32,
+    /// At a cusp all faces of the sector, else none.
+    cusp: Vec<u32>,
+}
+
+/// A place that is not numbered yet.
+const UNNUMBERED: u32 = u32::MAX;
 
 impl Hexagons {
     /// Refines once and collects the limits.
@@ -38,21 +49,28 @@ impl Hexagons {
         let mut places = Vec::new();
         for face in (0..refined.face_count() as u32).filter(|&face| !refined.is_hole(face)) {
             for (corner, &vertex) in (0..).zip(refined.face(face)) {
-                let plane = shared_tangent_plane(&refined, face, corner);
-                let next = numbers.len() as u32;
-                numbers.entry((vertex, plane)).or_insert_with(|| {
-                    places.push((vertex, plane));
+                let sector = sector(&refined, face, corner);
+                numbers.entry((vertex, sector[0])).or_insert_with(|| {
+                    let cusp = is_cusp(&refined, face, corner) && sector.len() > 1;
                     counts[vertex as usize] += 1;
-                    next
+                    places.push(Place {
+                        vertex,
+                        face: sector[0],
+                        cusp: if cusp { sector } else { Vec::new() },
+                    });
+                    UNNUMBERED
                 });
             }
         }
-        let stencils: Vec<LimitStencil> = places
-            .par_iter()
-            .map(|&(vertex, face)| stencil(&refined, scheme, face, vertex, &masks))
-            .collect();
+        // Points whose normals are means come last, in a row.
+        places.sort_by_key(|place| !place.cusp.is_empty());
+        for (number, place) in (0..).zip(&places) {
+            numbers.insert((place.vertex, place.face), number);
+        }
+        let stencil =
+            |&(vertex, face): &(u32, u32)| stencil(&refined, scheme, face, vertex, &masks);
         Hexagons {
-            points: rows(&places, &stencils),
+            points: rows(&places, stencil),
             refined,
             numbers,
             counts,
@@ -74,8 +92,7 @@ impl Hexagons {
             if self.counts[vertex as usize] > 1 {
                 flags |= super::creased(i);
             }
-            let plane = shared_tangent_plane(&self.refined, child, corner);
-            self.numbers[&(vertex, plane)]
+            self.numbers[&(vertex, sector(&self.refined, child, corner)[0])]
         });
         (points, flags)
     }
@@ -100,14 +117,47 @@ fn stencil(
     }
 }
 
-/// A row a point. All points of a vertex have the position of the first: the same bits whatever rounding did to the others.
-fn rows(places: &[(u32, u32)], stencils: &[LimitStencil]) -> Points {
+/// The faces around a corner up to the next infinite creases, the lowest first.
+fn sector(topology: &Topology, face: u32, corner: u32) -> Vec<u32> {
+    let mut faces = topology.fan(face, corner).faces.to_vec();
+    faces.sort_unstable();
+    faces
+}
+
+/// The rows: limits of all places, limits as each face at a cusp sees them, and the means of those. All points of a vertex have the position of
+/// the first: the same bits whatever rounding did to the others.
+fn rows(places: &[Place], stencil: impl Fn(&(u32, u32)) -> LimitStencil + Sync) -> Points {
     let mut points = Points::default();
-    let mut first: FxHashMap<u32, &Mask> = FxHashMap::default();
+    let mut positions: FxHashMap<u32, Mask> = FxHashMap::default();
+    let mut limits = |points: &mut Points, seen: &[(u32, u32)]| {
+        let stencils: Vec<LimitStencil> = seen.par_iter().map(&stencil).collect();
+        for (&(vertex, _), stencil) in seen.iter().zip(&stencils) {
+            let position = positions
+                .entry(vertex)
+                .or_insert_with(|| stencil.position.clone());
+            points.push(Row::Limit([position, &stencil.du, &stencil.dv]));
+        }
+    };
     points.begin(abi::POINTS_LIMIT, 0);
-    for (&(vertex, _), stencil) in places.iter().zip(stencils) {
-        let position = *first.entry(vertex).or_insert(&stencil.position);
-        points.push(Row::Limit([position, &stencil.du, &stencil.dv]));
+    let seen: Vec<(u32, u32)> = places
+        .iter()
+        .map(|place| (place.vertex, place.face))
+        .collect();
+    limits(&mut points, &seen);
+    let cusps = places.iter().filter(|place| !place.cusp.is_empty());
+    let first = places.len() - cusps.clone().count();
+    let seen: Vec<(u32, u32)> = cusps
+        .clone()
+        .flat_map(|place| place.cusp.iter().map(|&face| (place.vertex, face)))
+        .collect();
+    let mut next = places.len() as u32;
+    points.begin(abi::POINTS_LIMIT, next);
+    limits(&mut points, &seen);
+    points.begin(abi::POINTS_NORMALS, first as u32);
+    for place in cusps {
+        let faces = next..next + place.cusp.len() as u32;
+        next = faces.end;
+        points.push(Row::Normals(&faces.map(|face| (face, 1.0)).collect()));
     }
     points
 }

@@ -49,11 +49,11 @@ const uint NOWHERE = 4u;
 Spot spot(vec2 uv) {
 #ifdef QUADS
     bool on[4] = bool[](uv.y <= 0.0, uv.x >= 1.0, uv.y >= 1.0, uv.x <= 0.0);
-    float along[4] = float[](uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y);
+    precise float along[4] = float[](uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y);
 #else
     precise float last = (1.0 - uv.x) - uv.y;
     bool on[3] = bool[](uv.y <= 0.0, last <= 0.0, uv.x <= 0.0);
-    float along[3] = float[](uv.x, uv.y, 1.0 - uv.y);
+    precise float along[3] = float[](uv.x, uv.y, 1.0 - uv.y);
 #endif
     Spot found = Spot(NOWHERE, NOWHERE, 0.0);
     for (uint edge = CORNERS; edge-- > 0u;) {
@@ -93,7 +93,8 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
         TablePlace place = places[first + found.edge];
         TableFace face = faces[place.face];
         bool flipped = (place.side & PLACE_FLIPPED) != 0u;
-        precise float at = (flipped ? 1.0 - found.along : found.along) * float(face.segments);
+        precise float reverse = 1.0 - found.along;
+        precise float at = (flipped ? reverse : found.along) * float(face.segments);
         return summed(face, lattice_along(face, place.side & ~PLACE_FLIPPED, at));
     }
     return summed(faces[record.plan], lattice_inside(faces[record.plan], uv));

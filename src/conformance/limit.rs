@@ -3,12 +3,14 @@
 //! Distances are in units: last places of a float that is as large as the model, which is the diagonal times 2^-23. A seeded fault moves a
 //! control vertex by a part in a thousand before the truth is asked.
 
+mod lattice;
+
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::abi::{self, Captured};
 use crate::conformance::capture::{Frame, SPACINGS, captured, cut, spacing_name};
 use crate::conformance::meshes::{
-    Draft, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, under,
+    Draft, can_draw, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, under,
     with_positions,
 };
 use crate::conformance::{Case, Check, Context, Finding, Group};
@@ -77,6 +79,7 @@ fn cases() -> Vec<Case> {
     cases.extend(depths());
     cases.extend(levels());
     cases.extend(shapes());
+    cases.extend(lattice::cases());
     cases.extend(places());
     cases.extend((0..30).map(|number| {
         let setup = Setup::new(9.0, SPACINGS[number % 2]);
@@ -247,18 +250,15 @@ const SHAPES: [&str; 6] = [
     "pole-360",
 ];
 
-/// Every method under every scheme that it does, as far as the scheme knows the shape's tags.
+/// Every method under every scheme that it does, as far as scheme and method know the shape's tags.
 fn shapes() -> impl Iterator<Item = Case> {
-    let pairs = METHODS.iter().flat_map(|method| {
-        method
-            .schemes
-            .iter()
-            .map(move |&scheme| (method.name, scheme))
-    });
+    let pairs = METHODS
+        .iter()
+        .flat_map(|method| method.schemes.iter().map(move |&scheme| (method, scheme)));
     let triples = pairs.flat_map(|(method, scheme)| SHAPES.map(|shape| (method, scheme, shape)));
-    let known = triples
-        .filter(|&(_, scheme, shape)| builtin(shape).and_then(|mesh| under(mesh, scheme)).is_ok());
+    let known = triples.filter(|&(method, scheme, shape)| can_draw(method, shape, scheme));
     known.flat_map(|(method, scheme, shape)| {
+        let method = method.name;
         SPACINGS.map(|spacing| {
             let setup = Setup {
                 method: Some(method),
@@ -295,12 +295,7 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
         Some(name) => method(name)?,
         None => method_for(model.mesh().options().scheme),
     };
-    let prepared = match method.prepare(model, setup.options) {
-        Err(error @ Error::Input { .. }) if may_refuse(model, method) => {
-            return Ok(Finding::skip(error.to_string()));
-        }
-        prepared => prepared?,
-    };
+    let prepared = method.prepare(model, setup.options)?;
     let passes = prepared.clone();
     let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
     let ruler = Ruler {
@@ -330,11 +325,6 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
         "{count} points, at most {:.2} units and {:.5} degrees off",
         worst[0], worst[1]
     )))
-}
-
-/// Whether a method may refuse a mesh: the one that draws its scheme by default may not.
-pub(super) fn may_refuse(model: &Model, method: &Method) -> bool {
-    method_for(model.mesh().options().scheme).name != method.name
 }
 
 /// How far off a method may be.

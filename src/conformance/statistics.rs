@@ -7,15 +7,14 @@ use crate::conformance::capture::{
     SPACINGS, captured, cut, over_patches, prepare, spacing_name, vertices,
 };
 use crate::conformance::coordinates::{TessLevels, segments, shoot};
-use crate::conformance::limit::may_refuse;
-use crate::conformance::meshes::under;
+use crate::conformance::meshes::{can_draw, under};
 use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Case, Check, Context, Finding, Group, Status};
 use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{Model, builtin};
-use crate::method::{METHODS, Prepared, method, method_for};
+use crate::method::{METHODS, Prepared, method_for};
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -46,6 +45,7 @@ fn cases() -> Vec<Case> {
     for shape in SHAPES {
         for (method, spacing) in METHODS
             .iter()
+            .filter(|method| can_draw(method, shape, method.schemes[0]))
             .flat_map(|method| SPACINGS.map(|spacing| (method, spacing)))
         {
             let name = format!(
@@ -118,12 +118,7 @@ fn predicted(context: &Context, model: &Model, method: &str, cuts: &[Cut]) -> Re
     let mut check = Check::default();
     let (mut work, mut wanted) = ([0; 3], [0; 3]);
     for &cut in cuts {
-        let prepared = match prepare(model, method) {
-            Err(error @ Error::Input { .. }) if may_refuse(model, self::method(method)?) => {
-                return Ok(Finding::skip(error.to_string()));
-            }
-            prepared => prepared?,
-        };
+        let prepared = prepare(model, method)?;
         let points = over_patches(&prepared, |pass, patch| {
             cut.points(&prepared.passes[pass], patch)
         });

@@ -51,14 +51,14 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    covers: covered::check,
     prepare,
 };
 
-/// The level of the tables (section II-A: "for instance at level 5"): patches have half the tess level of their faces, which is 64 at most.
-const TABLE_LEVEL: u32 = 5;
+/// The greatest level of the tables: a patch has 2^level segments an edge, half of what its face has.
+const GREATEST_TABLE_LEVEL: u32 = 6;
 
 fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
-    covered::check(model)?;
     let level = table_level(options);
     let scheme = model.mesh().options().scheme;
     let Refinement {
@@ -73,9 +73,10 @@ fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
     })
 }
 
-/// Of shallower plans the tables are shallower too.
+/// The level of the tables is one less than that of plans, since a patch is half as long as its face: 5 by default, as in section II-A.
 fn table_level(options: PlanOptions) -> u32 {
-    options.max_level.saturating_sub(1).clamp(1, TABLE_LEVEL)
+    let level = options.max_level.saturating_sub(1);
+    level.clamp(1, GREATEST_TABLE_LEVEL)
 }
 
 /// The "computational entries" of section II-B: the refined vertices over the control vertices, and the rings around them that give normals.

@@ -70,6 +70,8 @@ pub struct Method {
     pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
+    /// Refuses meshes that it cannot draw, by a place in them.
+    covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
     prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
 }
@@ -78,10 +80,19 @@ impl Method {
     /// Prepares a model.
     ///
     /// # Errors
-    /// [`Error::Option`] when the method does not do the model's scheme, and whatever the method itself refuses.
+    /// As [`Method::check_model`].
     pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
-        self.check(model.mesh().options().scheme)?;
+        self.check_model(model)?;
         (self.prepare)(model, options)
+    }
+
+    /// Whether the method can draw a model, without preparing it.
+    ///
+    /// # Errors
+    /// As [`Method::check`]; [`Error::Input`] names an edge or vertex that the method has no way to draw.
+    pub fn check_model(&self, model: &Model) -> Result<()> {
+        self.check(model.mesh().options().scheme)?;
+        (self.covers)(model)
     }
 
     /// Whether the method does a scheme.
@@ -107,6 +118,11 @@ impl Method {
             ),
         })
     }
+}
+
+/// For methods that can draw whatever their schemes know.
+fn every_mesh(_: &Model) -> Result<()> {
+    Ok(())
 }
 
 /// Every method.

@@ -63,7 +63,7 @@ impl Twin {
             let pass = &self.prepared.passes[pass];
             (pass, patch, from_ptex(&pass.patches[patch], uv))
         });
-        let last = parts.clone().last();
+        let last = parts.clone().next_back();
         parts
             .find(|(pass, _, uv)| pass.domain.contains(*uv))
             .or(last)

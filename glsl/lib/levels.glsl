@@ -45,8 +45,10 @@ float step_of(uint i, uint n) {
 vec2 shared_coordinates(Patch record, Levels levels, vec3 barycentric) {
     vec2 uv = barycentric.yz;
     if (min(barycentric.x, min(uv.x, uv.y)) > 0.0) return uv;
-    uv = round(uv * 65536.0) / 65536.0;
-    return barycentric.x <= 0.0 ? vec2(uv.x, 1.0 - uv.x) : uv;
+    precise vec2 whole = roundEven(uv * 65536.0);
+    precise vec2 steps = whole * (1.0 / 65536.0);
+    precise float rest = 1.0 - steps.x;
+    return barycentric.x <= 0.0 ? vec2(steps.x, rest) : steps;
 }
 #else
 // Of an edge beside an n-gon both sides must have the same coordinates, but what the tessellator makes of a quad's 1/6 may differ from half

@@ -340,11 +340,11 @@ fn within(method: &Method) -> f64 {
 /// What is right.
 enum Right {
     /// A surface in f64.
-    Truth(LimitSurface),
+    Truth(Box<LimitSurface>),
     /// The method's own, on the CPU.
     Twin(Controls),
     /// Positions of the surface in f64 on the pass' lattice, the method's own off it; normals are its own everywhere.
-    Lattice(LimitSurface, Controls),
+    Lattice(Box<LimitSurface>, Controls),
 }
 
 /// The truth of a method's contract: the limit, everywhere or on a lattice, or linear faces. A method with a surface of its own, and plain
@@ -364,11 +364,11 @@ fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared)
 }
 
 /// The surface in f64, with vertex 0 moved by a part of the diagonal.
-fn truth(mesh: &ControlMesh, scheme: Scheme, moved: f64) -> Result<LimitSurface> {
+fn truth(mesh: &ControlMesh, scheme: Scheme, moved: f64) -> Result<Box<LimitSurface>> {
     let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
     positions[0][2] += moved * diagonal(mesh);
     let mesh = with_positions(mesh, &positions)?;
-    Ok(LimitSurface::of_scheme(&mesh, scheme))
+    Ok(Box::new(LimitSurface::of_scheme(&mesh, scheme)))
 }
 
 /// The same for the CPU's twin.

@@ -30,9 +30,9 @@ const ARITHMETIC: [u32; 13] = [
     129, 131, 133, 136, 140, 141, 142, 143, 144, 145, 146, 147, 148,
 ];
 
-/// Extended instructions that round once or not at all, by a rule of the device that no neighbour changes: FAbs, Floor, Ceil, InverseSqrt,
+/// Extended instructions that round once or not at all, by a rule of the device that no neighbour changes: RoundEven, FAbs, Floor, Ceil, InverseSqrt,
 /// minima, maxima, clamps. Mixes, fused multiplications, lengths and cross products are not among them.
-const ONE_ROUNDING: [u32; 12] = [4, 8, 9, 32, 37, 38, 39, 40, 41, 42, 43, 44];
+const ONE_ROUNDING: [u32; 13] = [2, 4, 8, 9, 32, 37, 38, 39, 40, 41, 42, 43, 44];
 
 const NO_CONTRACTION: u32 = 42;
 

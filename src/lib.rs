@@ -52,7 +52,7 @@
 //! // positions are relative to the model's centre.
 //! let patch = pass.patches.iter().position(|patch| patch.ptex == 1).expect("each face has a patch");
 //! let uv = from_ptex(&pass.patches[patch], [0.5, 0.5]);
-//! let twin = pass.evaluate(&model.positions(), patch, Vec2::from(uv));
+//! let twin = pass.evaluate(&prepared.controls(model.positions()), patch, Vec2::from(uv));
 //! let position = twin.position.as_dvec3() + model.centre();
 //! assert!(position.distance(truth.position) < 1e-6);
 //! # Ok::<(), hullform::Error>(())

@@ -4,6 +4,7 @@
 mod common;
 
 use common::cli::{fails, has_device, run, stderr};
+use hullform::mesh::Scheme;
 use hullform::method::METHODS;
 use serde_json::Value;
 
@@ -76,8 +77,13 @@ fn every_method_is_compared_or_refused_and_a_method_hardly_differs_from_its_twin
     if !has_device() {
         return;
     }
-    let report = compare(&["--against", "quadtree"]);
+    let names: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
+    let report = compare(&["--against", "quadtree", "--methods", &names.join(",")]);
+    let able = METHODS
+        .iter()
+        .filter(|m| m.check(Scheme::CatmullClark).is_ok());
     let count = |list: &str| report[list].as_array().expect("a list").len();
+    assert_eq!(count("methods"), able.count());
     assert_eq!(count("methods") + count("refused"), METHODS.len());
     assert_eq!(report["against"], "quadtree");
     let mut methods = report["methods"].as_array().expect("a list").iter();
@@ -95,7 +101,7 @@ fn bad_input_is_named_and_writes_nothing() {
         words.contains("--methods: ") && words.contains("'nurbs'"),
         "{words}"
     );
-    assert!(words.contains("quadtree, flat"), "{words}");
+    assert!(words.contains("choose one of quadtree, "), "{words}");
     let words = fails(&[&start[..], &["--against", "nurbs"]].concat(), 2);
     assert!(
         words.contains("--against: ") && words.contains("or truth"),

@@ -152,7 +152,7 @@ fn an_unknown_method_or_device_is_named() {
         2,
     );
     assert!(
-        words.contains("'nurbs'") && words.contains("quadtree, flat"),
+        words.contains("'nurbs'") && words.contains("choose one of quadtree, "),
         "{words}"
     );
     let words = fails(

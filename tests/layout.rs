@@ -37,10 +37,14 @@ fn all_modules() -> Vec<(String, Vec<u8>)> {
 /// The struct whose elements, or itself, a block holds; the name it has in Rust.
 fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
     match block {
+        Block::PushConstants if module.starts_with("points.comp") => Some("PointStep"),
         Block::PushConstants => Some("Frame"),
         Block::Buffer { binding } => match binding {
             abi::BINDING_PATCHES => Some("Patch"),
             abi::BINDING_CAPTURE => Some("Captured"),
+            abi::BINDING_POINTS => Some("Point"),
+            abi::BINDING_POINT_ROWS => Some("PointRow"),
+            abi::BINDING_POINT_TERMS => Some("PointTerm"),
             // The tables of this method; another's are its own.
             abi::BINDING_TABLES if module.starts_with("quadtree.") => Some("PlanHeader"),
             TABLE_1 if module.starts_with("quadtree.") => Some("Node"),

@@ -73,7 +73,11 @@ pub fn from_truth(
         let sample = truth.evaluate(patch.ptex as usize, u, v);
         let sample = sample.expect("holes are not drawn");
         let position = Vec3::from(vertex.position).as_dvec3() + model.centre();
-        let angle = degrees(vertex.normal, sample.normal());
+        let angle = if on_lattice {
+            0.0
+        } else {
+            degrees(vertex.normal, sample.normal())
+        };
         worst.add(position.distance(sample.position) / diagonal, angle);
     }
     worst

@@ -88,6 +88,16 @@ const uint PATCH_HALF = 16u;
 const uint PATCH_TURN_SHIFT = 5u;
 // Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
 const uint PATCH_CREASED = 65536u;
+// Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
+const uint PATCH_REFINED = 32768u;
+// Patch flag: which child of its ptex face a patch is; four bits. 0 is the whole face.
+const uint PATCH_CHILD_SHIFT = 11u;
+// The child of a quad at corner 0; those at the other corners follow.
+const uint CHILD_OF_QUAD = 1u;
+// The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
+const uint CHILD_OF_TRIANGLE = 5u;
+// Flag of a `TablePlace`: the edge runs against the direction of that face.
+const uint PLACE_FLIPPED = 2147483648u;
 // Frame flag: spacing is fractional-even, else equal.
 const uint FRAME_FRACTIONAL_EVEN = 1u;
 // Frame flag: slots come from the host, else from the batch's counter.
@@ -201,6 +211,28 @@ struct PointStep {
     uint first_point;
     // How many points.
     uint count;
+};
+
+// A face whose limit is a table of weights: what is summed, and with which weights.
+struct TableFace {
+    // Where the numbers of its points begin.
+    uint controls;
+    // How many points, and weights a row.
+    uint count;
+    // Where its weights begin.
+    uint weights;
+    // Corners of the face, 3 or 4.
+    uint corners;
+    // Segments of an edge: a power of two.
+    uint segments;
+};
+
+// Where an edge or a vertex is evaluated: on a face that all who share it agree upon.
+struct TablePlace {
+    // The face, by its number in the table.
+    uint face;
+    // The face's own edge or corner, and `PLACE_FLIPPED`.
+    uint side;
 };
 
 // A node of a quadtree.

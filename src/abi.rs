@@ -190,6 +190,17 @@ constants! {
     /// Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
     PATCH_CREASED = 0x1_0000;
 
+    /// Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
+    PATCH_REFINED = 0x8000;
+    /// Patch flag: which child of its ptex face a patch is; four bits. 0 is the whole face.
+    PATCH_CHILD_SHIFT = 11;
+    /// The child of a quad at corner 0; those at the other corners follow.
+    CHILD_OF_QUAD = 1;
+    /// The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
+    CHILD_OF_TRIANGLE = 5;
+    /// Flag of a `TablePlace`: the edge runs against the direction of that face.
+    PLACE_FLIPPED = 0x8000_0000;
+
     /// Frame flag: spacing is fractional-even, else equal.
     FRAME_FRACTIONAL_EVEN = 1;
     /// Frame flag: slots come from the host, else from the batch's counter.
@@ -307,6 +318,28 @@ structs! {
         first_point: u32,
         /// How many points.
         count: u32,
+    }
+
+    /// A face whose limit is a table of weights: what is summed, and with which weights.
+    TableFace {
+        /// Where the numbers of its points begin.
+        controls: u32,
+        /// How many points, and weights a row.
+        count: u32,
+        /// Where its weights begin.
+        weights: u32,
+        /// Corners of the face, 3 or 4.
+        corners: u32,
+        /// Segments of an edge: a power of two.
+        segments: u32,
+    }
+
+    /// Where an edge or a vertex is evaluated: on a face that all who share it agree upon.
+    TablePlace {
+        /// The face, by its number in the table.
+        face: u32,
+        /// The face's own edge or corner, and `PLACE_FLIPPED`.
+        side: u32,
     }
 
     /// A node of a quadtree.

@@ -12,6 +12,7 @@ use hullform::abi;
 use hullform::gpu::shaders::MODULES;
 
 const TABLE_1: u32 = abi::BINDING_TABLES + 1;
+const TABLE_2: u32 = abi::BINDING_TABLES + 2;
 const TABLE_4: u32 = abi::BINDING_TABLES + 4;
 
 /// Every module that shares `abi` with the library: all but those of the conformance suite.
@@ -48,6 +49,8 @@ fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
             // The tables of this method; another's are its own.
             abi::BINDING_TABLES if module.starts_with("quadtree.") => Some("PlanHeader"),
             TABLE_1 if module.starts_with("quadtree.") => Some("Node"),
+            TABLE_1 if module.starts_with("bft") => Some("TableFace"),
+            TABLE_2 if module.starts_with("bft") => Some("TablePlace"),
             TABLE_4 if module.starts_with("quadtree.") => Some("Border"),
             _ => None,
         },

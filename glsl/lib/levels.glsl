@@ -58,7 +58,8 @@ vec2 shared_coordinates(Patch record, Levels levels, vec3 coordinates) {
     bvec2 on = bvec2(uv.x <= 0.0 || uv.x >= 1.0, uv.y <= 0.0 || uv.y >= 1.0);
     uint edge = on.y ? (uv.y <= 0.0 ? 0u : 2u) : (uv.x <= 0.0 ? 3u : 1u);
     bool part = (record.flags & PATCH_HALF) != 0u;
-    bool beside = part ? edge == 0u || edge == 3u : (record.flags & (PATCH_EVEN_EDGE << edge)) != 0u;
+    bool refined = (record.flags & PATCH_REFINED) != 0u;
+    bool beside = part ? refined || edge == 0u || edge == 3u : (record.flags & (PATCH_EVEN_EDGE << edge)) != 0u;
     if (on.x == on.y || !beside) return uv;
     float along = on.y ? uv.x : uv.y;
     uint segments = uint(levels.edges[edge]);

@@ -3,12 +3,14 @@
 //! Distances are in units: last places of a float that is as large as the model, which is the diagonal times 2^-23. A seeded fault moves a
 //! control vertex by a part in a thousand before the truth is asked.
 
+mod lattice;
+
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::abi::{self, Captured};
 use crate::conformance::capture::{Frame, SPACINGS, captured, cut, spacing_name};
 use crate::conformance::meshes::{
-    Draft, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, under,
+    Draft, can_draw, cornered_sheet, creased_sheet, framed_polygon, moved, open_star, star, under,
     with_positions,
 };
 use crate::conformance::{Case, Check, Context, Finding, Group};
@@ -77,6 +79,7 @@ fn cases() -> Vec<Case> {
     cases.extend(depths());
     cases.extend(levels());
     cases.extend(shapes());
+    cases.extend(lattice::cases());
     cases.extend(places());
     cases.extend((0..30).map(|number| {
         let setup = Setup::new(9.0, SPACINGS[number % 2]);
@@ -247,18 +250,15 @@ const SHAPES: [&str; 6] = [
     "pole-360",
 ];
 
-/// Every method under every scheme that it does, as far as the scheme knows the shape's tags.
+/// Every method under every scheme that it does, as far as scheme and method know the shape's tags.
 fn shapes() -> impl Iterator<Item = Case> {
-    let pairs = METHODS.iter().flat_map(|method| {
-        method
-            .schemes
-            .iter()
-            .map(move |&scheme| (method.name, scheme))
-    });
+    let pairs = METHODS
+        .iter()
+        .flat_map(|method| method.schemes.iter().map(move |&scheme| (method, scheme)));
     let triples = pairs.flat_map(|(method, scheme)| SHAPES.map(|shape| (method, scheme, shape)));
-    let known = triples
-        .filter(|&(_, scheme, shape)| builtin(shape).and_then(|mesh| under(mesh, scheme)).is_ok());
+    let known = triples.filter(|&(method, scheme, shape)| can_draw(method, shape, scheme));
     known.flat_map(|(method, scheme, shape)| {
+        let method = method.name;
         SPACINGS.map(|spacing| {
             let setup = Setup {
                 method: Some(method),
@@ -330,7 +330,9 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
 /// How far off a method may be.
 fn within(method: &Method) -> f64 {
     match method.contract.reproduces {
-        Reproduces::Limit(most) | Reproduces::Faces(most) => most,
+        Reproduces::Limit(most) | Reproduces::LimitOnLattice(most) | Reproduces::Faces(most) => {
+            most
+        }
         Reproduces::Itself => 1e-6,
     }
 }
@@ -341,38 +343,39 @@ enum Right {
     Truth(Box<LimitSurface>),
     /// The method's own, on the CPU.
     Twin(Controls),
+    /// Positions of the surface in f64 on the pass' lattice, the method's own off it; normals are its own everywhere.
+    Lattice(Box<LimitSurface>, Controls),
 }
 
-/// The truth of a method's contract: the limit, or linear faces. A method with a surface of its own, and plain triangles, are held to the
-/// CPU's twin.
+/// The truth of a method's contract: the limit, everywhere or on a lattice, or linear faces. A method with a surface of its own, and plain
+/// triangles, are held to the CPU's twin.
 fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared) -> Result<Right> {
-    let mesh = model.mesh();
-    let scheme = match method.contract.reproduces {
-        Reproduces::Limit(_) => Some(mesh.options().scheme),
-        Reproduces::Faces(_) if mesh.options().scheme == Scheme::CatmullClark => {
-            Some(Scheme::Bilinear)
+    let own = model.mesh().options().scheme;
+    let moved = if context.is_wrong() { 1e-3 } else { 0.0 };
+    let twin = || twin(model, prepared, moved);
+    Ok(match method.contract.reproduces {
+        Reproduces::Limit(_) => Right::Truth(truth(model.mesh(), own, moved)?),
+        Reproduces::LimitOnLattice(_) => Right::Lattice(truth(model.mesh(), own, moved)?, twin()),
+        Reproduces::Faces(_) if own == Scheme::CatmullClark => {
+            Right::Truth(truth(model.mesh(), Scheme::Bilinear, moved)?)
         }
-        Reproduces::Faces(_) | Reproduces::Itself => None,
-    };
-    let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
-    if context.is_wrong() {
-        positions[0][2] += 1e-3 * diagonal(mesh);
-    }
-    Ok(match scheme {
-        Some(scheme) => Right::Truth(Box::new(LimitSurface::of_scheme(
-            &with_positions(mesh, &positions)?,
-            scheme,
-        ))),
-        None => {
-            let mut vertices = model.positions();
-            vertices[0].z += if context.is_wrong() {
-                1e-3 * diagonal(mesh) as f32
-            } else {
-                0.0
-            };
-            Right::Twin(prepared.controls(vertices))
-        }
+        Reproduces::Faces(_) | Reproduces::Itself => Right::Twin(twin()),
     })
+}
+
+/// The surface in f64, with vertex 0 moved by a part of the diagonal.
+fn truth(mesh: &ControlMesh, scheme: Scheme, moved: f64) -> Result<Box<LimitSurface>> {
+    let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
+    positions[0][2] += moved * diagonal(mesh);
+    let mesh = with_positions(mesh, &positions)?;
+    Ok(Box::new(LimitSurface::of_scheme(&mesh, scheme)))
+}
+
+/// The same for the CPU's twin.
+fn twin(model: &Model, prepared: &Prepared, moved: f64) -> Controls {
+    let mut vertices = model.positions();
+    vertices[0].z += (moved * diagonal(model.mesh())) as f32;
+    prepared.controls(vertices)
 }
 
 fn diagonal(mesh: &ControlMesh) -> f64 {
@@ -434,10 +437,15 @@ impl Ruler<'_> {
         let uv = to_ptex(&pass.patches[number], vertex.uv);
         let right = match &self.right {
             Right::Truth(truth) => self.of_truth(truth, ptex, uv),
-            Right::Twin(controls) => {
-                let twin = pass.evaluate(controls, number, Vec2::from(vertex.uv));
-                let position = twin.position.as_dvec3() + self.model.centre();
-                Some((position, Some(twin.normal.as_dvec3())))
+            Right::Twin(controls) => Some(self.of_twin(controls, pass, vertex)),
+            Right::Lattice(truth, controls) => {
+                let twin = self.of_twin(controls, pass, vertex);
+                match pass.is_on_lattice(vertex.uv) {
+                    true => self
+                        .of_truth(truth, ptex, uv)
+                        .map(|(position, _)| (position, twin.1)),
+                    false => Some(twin),
+                }
             }
         };
         let Some((position, normal)) = right else {
@@ -459,6 +467,19 @@ impl Ruler<'_> {
             format!("{units:.2} units and {degrees:.4} degrees off at {uv:?} of ptex face {ptex}")
         });
         [units, degrees]
+    }
+
+    /// Position and normal of the CPU's twin.
+    fn of_twin(
+        &self,
+        controls: &Controls,
+        pass: &Pass,
+        vertex: &Captured,
+    ) -> (DVec3, Option<DVec3>) {
+        let number = vertex.patch_number as usize;
+        let twin = pass.evaluate(controls, number, Vec2::from(vertex.uv));
+        let position = twin.position.as_dvec3() + self.model.centre();
+        (position, Some(twin.normal.as_dvec3()))
     }
 
     /// Position and normal of the truth; no normal where the surface folds or stands still: there f32 has none.

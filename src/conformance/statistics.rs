@@ -2,18 +2,19 @@
 //!
 //! A seeded fault predicts one patch more.
 
+use crate::abi;
 use crate::conformance::capture::{
     SPACINGS, captured, cut, over_patches, prepare, spacing_name, vertices,
 };
 use crate::conformance::coordinates::{TessLevels, segments, shoot};
-use crate::conformance::meshes::under;
+use crate::conformance::meshes::{can_draw, under};
 use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Case, Check, Context, Finding, Group, Status};
 use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{Model, builtin};
-use crate::method::{METHODS, method_for};
+use crate::method::{METHODS, Prepared, method_for};
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -44,6 +45,7 @@ fn cases() -> Vec<Case> {
     for shape in SHAPES {
         for (method, spacing) in METHODS
             .iter()
+            .filter(|method| can_draw(method, shape, method.schemes[0]))
             .flat_map(|method| SPACINGS.map(|spacing| (method, spacing)))
         {
             let name = format!(
@@ -97,14 +99,16 @@ fn model_cases(name: &str) -> Vec<Case> {
         .into()
 }
 
-/// One patch a face that the scheme takes whole, one a corner of other faces; none in holes.
-fn patches(model: &Model) -> u64 {
+/// One patch a face that the scheme takes whole, or four where the method refines first, and one a corner of other faces; none in holes.
+fn patches(model: &Model, prepared: &Prepared) -> u64 {
+    let mut all = prepared.passes.iter().flat_map(|pass| &pass.patches);
+    let refined = all.any(|patch| patch.flags & abi::PATCH_REFINED != 0);
     let scheme = model.mesh().options().scheme;
     let faces = model.mesh().faces().enumerate();
     let drawn = faces.filter(|&(face, _)| !model.topology().is_hole(face as u32));
     drawn
         .map(|(_, vertices)| match vertices.len() {
-            n if scheme.is_whole(n) => 1,
+            n if scheme.is_whole(n) => 1 + 3 * u64::from(refined),
             n => n as u64,
         })
         .sum()
@@ -122,7 +126,7 @@ fn predicted(context: &Context, model: &Model, method: &str, cuts: &[Cut]) -> Re
             let levels = cut.levels(&prepared.passes[pass], patch);
             levels.triangles(cut.spacing)
         });
-        let patches = patches(model) + u64::from(context.is_wrong());
+        let patches = patches(model, &prepared) + u64::from(context.is_wrong());
         let evaluations = u64::from(vertices(&prepared, cut));
         let right = [patches, evaluations, u64::from(triangles)];
         let frame = captured(context, model, prepared, cut, Fill::Solid)?;

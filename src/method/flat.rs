@@ -10,7 +10,7 @@ use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
+use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -27,6 +27,7 @@ pub const METHOD: Method = Method {
         interpolates: true,
         watertight: false,
     },
+    covers: method::every_mesh,
     prepare,
 };
 

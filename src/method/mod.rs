@@ -3,6 +3,7 @@
 //! A method is one file here, one in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the rows;
 //! nothing else names a method.
 
+mod bft;
 mod displacement;
 mod flat;
 mod patches;
@@ -32,6 +33,9 @@ pub use surface::{Controls, SurfacePoint};
 pub enum Reproduces {
     /// The limit of the scheme, to within this.
     Limit(f64),
+    /// The limit of the scheme, to within this, at the corners of a grid of 2^([`Pass::max_level`] - 1) segments a patch's edge, and
+    /// linear between them: see [`Pass::is_on_lattice`].
+    LimitOnLattice(f64),
     /// The faces of the control mesh, to within this.
     Faces(f64),
     /// A surface of its own that looks like the limit.
@@ -66,6 +70,8 @@ pub struct Method {
     pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
+    /// Refuses meshes that it cannot draw, by a place in them.
+    covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
     prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
 }
@@ -74,10 +80,19 @@ impl Method {
     /// Prepares a model.
     ///
     /// # Errors
-    /// [`Error::Option`] when the method does not do the model's scheme, and whatever the method itself refuses.
+    /// As [`Method::check_model`].
     pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
-        self.check(model.mesh().options().scheme)?;
+        self.check_model(model)?;
         (self.prepare)(model, options)
+    }
+
+    /// Whether the method can draw a model, without preparing it.
+    ///
+    /// # Errors
+    /// As [`Method::check`]; [`Error::Input`] names an edge or vertex that the method has no way to draw.
+    pub fn check_model(&self, model: &Model) -> Result<()> {
+        self.check(model.mesh().options().scheme)?;
+        (self.covers)(model)
     }
 
     /// Whether the method does a scheme.
@@ -105,6 +120,11 @@ impl Method {
     }
 }
 
+/// For methods that can draw whatever their schemes know.
+fn every_mesh(_: &Model) -> Result<()> {
+    Ok(())
+}
+
 /// Every method.
 pub const METHODS: &[Method] = &[
     quadtree::METHOD,
@@ -112,12 +132,13 @@ pub const METHODS: &[Method] = &[
     pn::METHOD,
     phong::METHOD,
     flat::METHOD,
+    bft::METHOD,
 ];
 
 /// The method that a scheme is drawn by when nobody names one: the first in the table that does it.
 pub fn method_for(scheme: Scheme) -> &'static Method {
     let mut able = METHODS.iter().filter(|method| method.check(scheme).is_ok());
-    able.next().expect("the last row does every scheme")
+    able.next().expect("flat does every scheme")
 }
 
 /// The method of a name.
@@ -234,6 +255,12 @@ impl Pass {
         .to_array()
     }
 
+    /// Whether a point of a patch's domain is a corner of the finest grid that the pass has tables for; see [`Reproduces::LimitOnLattice`].
+    pub fn is_on_lattice(&self, uv: [f32; 2]) -> bool {
+        let segments = (1u32 << self.max_level.saturating_sub(1)) as f32;
+        uv.iter().all(|x| (x * segments).fract() == 0.0)
+    }
+
     /// The points that patch `patch` needs in the ring at `level`.
     pub fn points(&self, patch: usize, level: u32) -> u32 {
         let plan = self.patches[patch].plan as usize;
@@ -243,24 +270,101 @@ impl Pass {
     }
 }
 
-/// Where (u, v) of a patch's own domain lies in its ptex face: the domain may be turned by quarters.
+/// Where (u, v) of a patch's own domain lies in its ptex face: the patch may be one of its children, and its domain may be turned.
 pub fn to_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
-    let [u, v] = uv;
-    match patch.flags >> abi::PATCH_TURN_SHIFT & 3 {
-        0 => [u, v],
-        1 => [1.0 - v, u],
-        2 => [1.0 - u, 1.0 - v],
-        _ => [v, 1.0 - u],
+    let [u, v] = turned_back(patch, uv);
+    match child(patch) {
+        Child::Whole => [u, v],
+        Child::Corner([x, y]) => [0.5 * (u + x), 0.5 * (v + y)],
+        Child::Middle => [0.5 * (1.0 - u), 0.5 * (1.0 - v)],
     }
 }
 
-/// Where (u, v) of a ptex face lies in the patch's own domain.
+/// Where (u, v) of a ptex face lies in the patch's own domain; outside of it where another child has the point.
 pub fn from_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
     let [u, v] = uv;
-    match patch.flags >> abi::PATCH_TURN_SHIFT & 3 {
-        0 => [u, v],
-        1 => [v, 1.0 - u],
-        2 => [1.0 - u, 1.0 - v],
-        _ => [1.0 - v, u],
+    let own = match child(patch) {
+        Child::Whole => [u, v],
+        Child::Corner([x, y]) => [2.0 * u - x, 2.0 * v - y],
+        Child::Middle => [1.0 - 2.0 * u, 1.0 - 2.0 * v],
+    };
+    turned(patch, own)
+}
+
+/// Which part of its ptex face a patch is.
+enum Child {
+    Whole,
+    /// At the corner of this (u, v).
+    Corner([f32; 2]),
+    /// In the middle of a triangle, with its corners opposite to the triangle's.
+    Middle,
+}
+
+fn child(patch: &abi::Patch) -> Child {
+    const CORNERS: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    const OF_TRIANGLE: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
+        0 => Child::Whole,
+        number if number < abi::CHILD_OF_TRIANGLE => {
+            Child::Corner(CORNERS[(number - abi::CHILD_OF_QUAD) as usize])
+        }
+        number => match OF_TRIANGLE.get((number - abi::CHILD_OF_TRIANGLE) as usize) {
+            Some(&corner) => Child::Corner(corner),
+            None => Child::Middle,
+        },
+    }
+}
+
+/// By how many corners the patch's domain is turned against its face, and whether it is a triangle's. Whole triangles are not turned.
+fn turn(patch: &abi::Patch) -> (u32, bool) {
+    let child = patch.flags >> abi::PATCH_CHILD_SHIFT & 15;
+    let turn = patch.flags >> abi::PATCH_TURN_SHIFT & 3;
+    (turn, child >= abi::CHILD_OF_TRIANGLE)
+}
+
+fn turned_back(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
+    match turn(patch) {
+        (0, _) => [u, v],
+        (1, true) => [(1.0 - u) - v, u],
+        (_, true) => [v, (1.0 - u) - v],
+        (1, false) => [1.0 - v, u],
+        (2, false) => [1.0 - u, 1.0 - v],
+        (_, false) => [v, 1.0 - u],
+    }
+}
+
+fn turned(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
+    match turn(patch) {
+        (0, _) => [u, v],
+        (1, true) => [v, (1.0 - u) - v],
+        (_, true) => [(1.0 - u) - v, u],
+        (1, false) => [v, 1.0 - u],
+        (2, false) => [1.0 - u, 1.0 - v],
+        (_, false) => [1.0 - v, u],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn children_and_turns_lead_to_the_ptex_face_and_back() {
+        for child in 0..=8u32 {
+            let turns = if child >= abi::CHILD_OF_TRIANGLE {
+                3
+            } else {
+                4
+            };
+            for turn in 0..turns {
+                let patch = abi::Patch {
+                    flags: child << abi::PATCH_CHILD_SHIFT | turn << abi::PATCH_TURN_SHIFT,
+                    ..Default::default()
+                };
+                for uv in [[0.0, 0.0], [0.25, 0.5], [1.0, 0.0], [0.0, 1.0]] {
+                    assert_eq!(from_ptex(&patch, to_ptex(&patch, uv)), uv);
+                }
+            }
+        }
     }
 }

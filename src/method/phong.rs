@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces, patches};
+use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces, patches};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -24,6 +24,7 @@ pub const METHOD: Method = Method {
         interpolates: true,
         watertight: true,
     },
+    covers: method::every_mesh,
     prepare,
 };
 

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces, patches};
+use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces, patches};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -33,6 +33,7 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    covers: method::every_mesh,
     prepare,
 };
 

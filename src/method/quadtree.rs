@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
+use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
@@ -36,6 +36,7 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    covers: method::every_mesh,
     prepare,
 };
 

@@ -56,10 +56,11 @@ pub fn push_ring(points: &mut Points, topology: &Topology, vertex: u32) {
         ends.extend(fan.edges.first().filter(|_| fan.closed).map(end));
         ends.push(vertex);
     }
+    let open = !ends.is_empty();
     points.push(Row::Ring {
         middle: vertex,
         ends: &ends,
-        open: true,
+        open,
     });
 }
 

@@ -21,5 +21,6 @@ pub use limit_surface::{LimitSample, LimitSurface};
 pub use masks::{Blend, Mask, edge_point, face_point, vertex_point};
 pub use refine::{Refinement, refine, refine_edge};
 pub use regular::{BsplinePatch, ControlPoint, bspline_patch};
+pub(crate) use schemes::rings as scheme_rings;
 pub use schemes::vertex_limit;
 pub use split::refine_all;

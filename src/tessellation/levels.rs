@@ -62,6 +62,15 @@ impl Domain {
             Domain::Triangles => 3,
         }
     }
+
+    /// Whether (u, v) is a point of it.
+    pub fn contains(self, [u, v]: [f32; 2]) -> bool {
+        let farthest = match self {
+            Domain::Quads => u.max(v),
+            Domain::Triangles => u + v,
+        };
+        u.min(v) >= 0.0 && farthest <= 1.0
+    }
 }
 
 /// Tess levels of a patch.

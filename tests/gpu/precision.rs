@@ -42,7 +42,8 @@ pub fn from_twin(model: &Model, prepared: &Prepared, frame: &Frame, step: usize)
     worst
 }
 
-/// Against the truth of a method's contract (linear faces where it promises no limit), every `step`th vertex.
+/// Against the truth of a method's contract (linear faces where it promises no limit), every `step`th vertex. Of one that promises the limit on
+/// a lattice only the vertices there, and no normals.
 pub fn from_truth(
     model: &Model,
     method: &Method,
@@ -51,8 +52,9 @@ pub fn from_truth(
     step: usize,
 ) -> Worst {
     let own = model.mesh().options().scheme;
+    let on_lattice = matches!(method.contract.reproduces, Reproduces::LimitOnLattice(_));
     let scheme = match method.contract.reproduces {
-        Reproduces::Limit(_) => own,
+        Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => own,
         Reproduces::Faces(_) if own == Scheme::CatmullClark => Scheme::Bilinear,
         // No truth in f64: the twin will do.
         Reproduces::Faces(_) | Reproduces::Itself => {
@@ -63,12 +65,19 @@ pub fn from_truth(
     let diagonal = common::diagonal(model.mesh());
     let mut worst = Worst::default();
     for (pass, vertex) in sampled(prepared, frame, step) {
+        if on_lattice && !pass.is_on_lattice(vertex.uv) {
+            continue;
+        }
         let patch = &pass.patches[vertex.patch_number as usize];
         let [u, v] = to_ptex(patch, vertex.uv).map(f64::from);
         let sample = truth.evaluate(patch.ptex as usize, u, v);
         let sample = sample.expect("holes are not drawn");
         let position = Vec3::from(vertex.position).as_dvec3() + model.centre();
-        let angle = degrees(vertex.normal, sample.normal());
+        let angle = if on_lattice {
+            0.0
+        } else {
+            degrees(vertex.normal, sample.normal())
+        };
         worst.add(position.distance(sample.position) / diagonal, angle);
     }
     worst

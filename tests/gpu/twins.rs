@@ -37,12 +37,11 @@ fn each_cut(
     }
 }
 
-/// The methods that do the model's scheme.
-fn able(model: &Model) -> impl Iterator<Item = &'static Method> {
-    let scheme = model.mesh().options().scheme;
+/// The methods that can draw the model.
+fn able(model: &Model) -> impl Iterator<Item = &'static Method> + '_ {
     METHODS
         .iter()
-        .filter(move |method| method.check(scheme).is_ok())
+        .filter(|method| method.check_model(model).is_ok())
 }
 
 fn assert_near(what: &str, worst: Worst, position: f64, normal: f64) {
@@ -130,7 +129,9 @@ fn captured_vertices_keep_the_contract() {
 
 fn limit(method: &Method) -> f64 {
     match method.contract.reproduces {
-        Reproduces::Limit(most) | Reproduces::Faces(most) => most,
+        Reproduces::Limit(most) | Reproduces::LimitOnLattice(most) | Reproduces::Faces(most) => {
+            most
+        }
         Reproduces::Itself => 1e-6,
     }
 }

@@ -102,8 +102,9 @@ impl Setup {
 /// Vulkan's.
 pub fn compare(context: &Context, model: &Model, setup: &Setup) -> Result<Compared> {
     let mut compared = Compared::default();
-    let scheme = model.mesh().options().scheme;
-    let able = METHODS.iter().filter(|method| method.check(scheme).is_ok());
+    let able = METHODS
+        .iter()
+        .filter(|method| method.check_model(model).is_ok());
     for method in able.filter(|method| method.contract.watertight) {
         compared.add(compare_method(context, model, setup, method)?);
     }

@@ -7,8 +7,10 @@ use std::f64::consts::TAU;
 use crate::conformance::random::Random;
 use crate::error::Result;
 use crate::mesh::{
-    ControlMesh, ControlMeshBuilder, Scheme, SchemeOptions, Triangulation, triangulated,
+    ControlMesh, ControlMeshBuilder, Model, Scheme, SchemeOptions, Triangulation, builtin,
+    triangulated,
 };
+use crate::method::Method;
 
 pub use draft::Draft;
 
@@ -246,10 +248,15 @@ pub fn under(mesh: ControlMesh, scheme: Scheme) -> Result<ControlMesh> {
     }
 }
 
+/// Whether a method can draw a built-in shape under a scheme.
+pub fn can_draw(method: &Method, shape: &str, scheme: Scheme) -> bool {
+    let mesh = builtin(shape).and_then(|mesh| under(mesh, scheme));
+    mesh.is_ok_and(|mesh| method.check_model(&Model::new(mesh)).is_ok())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Model;
 
     #[test]
     fn valences_are_the_wanted_ones() {

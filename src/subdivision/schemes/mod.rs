@@ -70,7 +70,7 @@ pub(super) fn rules(scheme: Scheme) -> Rules {
 }
 
 /// How many rings of faces around a face its limit depends on.
-pub(super) fn rings(scheme: Scheme) -> usize {
+pub(crate) fn rings(scheme: Scheme) -> usize {
     rules(scheme).rings
 }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec2};
 use hullform::mesh::Model;
-use hullform::method::{Controls, Prepared, from_ptex};
+use hullform::method::{Controls, Pass, Prepared, from_ptex};
 use hullform::subdivision::LimitSurface;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -31,24 +31,42 @@ pub struct Twin {
     prepared: Prepared,
     controls: Controls,
     centre: DVec3,
-    /// Pass and patch of each ptex face.
-    patches: HashMap<u32, (usize, usize)>,
+    /// Pass and patch of each part of each ptex face.
+    patches: HashMap<u32, Vec<(usize, usize)>>,
 }
 
 impl Twin {
     /// The twin of a prepared model.
     pub fn new(model: &Model, prepared: Prepared) -> Twin {
-        let numbered = prepared.passes.iter().enumerate();
-        let patches = numbered.flat_map(|(number, pass)| {
-            let patches = pass.patches.iter().enumerate();
-            patches.map(move |(patch, record)| (record.ptex, (number, patch)))
-        });
+        let mut patches: HashMap<u32, Vec<(usize, usize)>> = HashMap::new();
+        for (number, pass) in prepared.passes.iter().enumerate() {
+            for (patch, record) in pass.patches.iter().enumerate() {
+                patches
+                    .entry(record.ptex)
+                    .or_default()
+                    .push((number, patch));
+            }
+        }
         Twin {
-            patches: patches.collect(),
+            patches,
             controls: prepared.controls(model.positions()),
             centre: model.centre(),
             prepared,
         }
+    }
+}
+
+impl Twin {
+    /// The patch that has a point of a ptex face, and where in its domain: the last one where rounding leaves the point between several.
+    fn find(&self, face: u32, uv: [f32; 2]) -> Option<(&Pass, usize, [f32; 2])> {
+        let mut parts = self.patches.get(&face)?.iter().map(|&(pass, patch)| {
+            let pass = &self.prepared.passes[pass];
+            (pass, patch, from_ptex(&pass.patches[patch], uv))
+        });
+        let last = parts.clone().next_back();
+        parts
+            .find(|(pass, _, uv)| pass.domain.contains(*uv))
+            .or(last)
     }
 }
 
@@ -61,10 +79,8 @@ impl Reference {
                 Some((sample.position, sample.normal()))
             }
             Reference::Method(twin) => {
-                let &(pass, patch) = twin.patches.get(&face)?;
-                let pass = &twin.prepared.passes[pass];
-                let uv = Vec2::from(from_ptex(&pass.patches[patch], uv));
-                let sample = pass.evaluate(&twin.controls, patch, uv);
+                let (pass, patch, uv) = twin.find(face, uv)?;
+                let sample = pass.evaluate(&twin.controls, patch, Vec2::from(uv));
                 let position = sample.position.as_dvec3() + twin.centre;
                 Some((position, sample.normal.as_dvec3()))
             }

@@ -1,0 +1,108 @@
+// Tables of face functions (Holländer, Boubekeur 2011). Twin of `method/bft.rs`.
+#ifndef BFT_GLSL
+#define BFT_GLSL
+
+#ifdef QUADS
+const uint CORNERS = 4u;
+#else
+#define TRIANGLES
+const uint CORNERS = 3u;
+#endif
+
+#include "lib/cell.glsl"
+#include "lib/control_points.glsl"
+#include "lib/levels.glsl"
+#include "lib/points.glsl"
+#include "lib/surface.glsl"
+
+// Nothing goes from stage to stage but the patch's number: the evaluation shader fetches what it sums.
+const uint CONTROL_POINTS = 1u;
+#define CONTROL_VERTICES 1
+
+// What is shared has the same normal on all sides.
+bool has_one_normal(Patch record, vec2 uv) { return true; }
+
+#ifdef STAGE_VERTEX
+vec3 control_point(Patch record, uint number) { return vec3(0.0); }
+#endif
+
+#ifdef STAGE_CONTROL
+vec3 patch_point(Patch record, uint number) { return vec3(0.0); }
+#endif
+
+#ifdef STAGE_EVALUATION
+#include "lib/lattice.glsl"
+
+layout(set = 0, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
+layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer FaceTable { TableFace faces[]; };
+layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer PlaceTable { TablePlace places[]; };
+
+// Where a point of the patch lies: a corner, an edge from its first corner on, or with neither the inside.
+struct Spot {
+    uint corner;
+    uint edge;
+    float along;
+};
+
+const uint NOWHERE = 4u;
+
+Spot spot(vec2 uv) {
+#ifdef QUADS
+    bool on[4] = bool[](uv.y <= 0.0, uv.x >= 1.0, uv.y >= 1.0, uv.x <= 0.0);
+    precise float along[4] = float[](uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y);
+#else
+    precise float last = (1.0 - uv.x) - uv.y;
+    bool on[3] = bool[](uv.y <= 0.0, last <= 0.0, uv.x <= 0.0);
+    precise float along[3] = float[](uv.x, uv.y, 1.0 - uv.y);
+#endif
+    Spot found = Spot(NOWHERE, NOWHERE, 0.0);
+    for (uint edge = CORNERS; edge-- > 0u;) {
+        if (!on[edge]) continue;
+        found.edge = edge;
+        found.along = along[edge];
+        if (on[(edge + CORNERS - 1u) % CORNERS]) found.corner = edge;
+    }
+    return found;
+}
+
+// The sum over the face's points (equation 1), from the last to the first; the same weights for normals are subdivision shading.
+Point summed(TableFace face, Shares shares) {
+    precise vec3 position = vec3(0.0);
+    precise vec3 normal = vec3(0.0);
+    for (uint i = face.count; i-- > 0u;) {
+        precise float weight = 0.0;
+        for (uint k = 0u; k < 4u; ++k) {
+            if (shares.shares[k] == 0.0) continue;
+            weight += shares.shares[k] * weights[face.weights + shares.rows[k] * face.count + i];
+        }
+        Point point = points[controls[face.controls + i]];
+        position += weight * point.position;
+        normal += weight * point.normal;
+    }
+    return Point(position, direction(normal));
+}
+
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+    Spot found = spot(uv);
+    uint first = record.plan * 2u * CORNERS;
+    if (found.corner != NOWHERE) {
+        TablePlace place = places[first + CORNERS + found.corner];
+        return summed(faces[place.face], Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0)));
+    }
+    if (found.edge != NOWHERE) {
+        TablePlace place = places[first + found.edge];
+        TableFace face = faces[place.face];
+        bool flipped = (place.side & PLACE_FLIPPED) != 0u;
+        precise float reverse = 1.0 - found.along;
+        precise float at = (flipped ? reverse : found.along) * float(face.segments);
+        return summed(face, lattice_along(face, place.side & ~PLACE_FLIPPED, at));
+    }
+    return summed(faces[record.plan], lattice_inside(faces[record.plan], uv));
+}
+#endif
+
+#ifdef STAGE_FRAGMENT
+Cell cell_at(Patch record, vec2 uv) { return Cell(NODE_REGULAR, uv, 1.0); }
+#endif
+
+#endif

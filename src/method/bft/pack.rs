@@ -1,0 +1,222 @@
+//! Patches and tables as the device reads them.
+
+use rustc_hash::FxHashMap;
+
+use crate::abi::{self, TableFace, TablePlace};
+use crate::mesh::Model;
+use crate::method::bft::lattice::Lattice;
+use crate::method::bft::{Tables, domain, twin};
+use crate::method::patches::{self, Part};
+use crate::method::{Pass, to_ptex};
+use crate::tessellation::Domain;
+
+/// The passes of quads and of triangles, which may be empty.
+pub fn passes(model: &Model, tables: &Tables, max_level: u32) -> [Pass; 2] {
+    let owners = Owners::new(tables);
+    let children = children(model);
+    [("bft_quads", Domain::Quads), ("bft", Domain::Triangles)].map(|(shader, domain)| {
+        let mut packer = Packer {
+            tables,
+            pass: Pass::new(shader, domain, 1, twin),
+            numbers: FxHashMap::default(),
+            offsets: FxHashMap::default(),
+            faces: Vec::new(),
+            weights: Vec::new(),
+        };
+        packer.pass.max_level = max_level;
+        let faces = children.iter().filter(|child| child.part.domain == domain);
+        for child in faces.clone() {
+            packer.add(model, child);
+        }
+        let mut places = Vec::new();
+        for child in faces {
+            places.extend(packer.places(&owners, child.face));
+        }
+        packer.finish(&places)
+    })
+}
+
+/// A face of the refined mesh: the part of the control mesh that it belongs to, and which child of it it is.
+struct Child {
+    part: Part,
+    face: u32,
+    child: u32,
+}
+
+/// The faces that are drawn, in the order of ptex faces. The children of a whole face are its quarters, that at the corner of an n-gon is a part itself.
+fn children(model: &Model) -> Vec<Child> {
+    let topology = model.topology();
+    let scheme = model.mesh().options().scheme;
+    let mut first = 0;
+    let firsts: Vec<u32> = (0..topology.face_count() as u32)
+        .map(|face| {
+            let arity = topology.face(face).len();
+            let count = if scheme.is_whole(arity) { 4 } else { arity };
+            let own = first;
+            first += count as u32;
+            own
+        })
+        .collect();
+    let parts = patches::parts(model).into_iter().flat_map(|part| {
+        let whole = scheme.is_whole(topology.face(part.face).len());
+        let first_child = match part.domain {
+            Domain::Quads => abi::CHILD_OF_QUAD,
+            Domain::Triangles => abi::CHILD_OF_TRIANGLE,
+        };
+        let first = firsts[part.face as usize];
+        (0..if whole { 4 } else { 1 }).map(move |number| Child {
+            part,
+            face: first + if whole { number } else { part.corner },
+            child: if whole { first_child + number } else { 0 },
+        })
+    });
+    parts.collect()
+}
+
+/// The first face that is drawn on each edge and at each vertex of the refined mesh, with its own side or corner there.
+struct Owners {
+    edges: Vec<Option<(u32, u32)>>,
+    vertices: Vec<Option<(u32, u32)>>,
+}
+
+impl Owners {
+    fn new(tables: &Tables) -> Owners {
+        let topology = &tables.topology;
+        let mut owners = Owners {
+            edges: vec![None; topology.edge_count()],
+            vertices: vec![None; topology.vertex_count()],
+        };
+        for face in (0..topology.face_count() as u32).filter(|&face| !topology.is_hole(face)) {
+            for (side, &edge) in (0..).zip(topology.face_edges(face)) {
+                owners.edges[edge as usize].get_or_insert((face, side));
+            }
+            for (corner, &vertex) in (0..).zip(topology.face(face)) {
+                owners.vertices[vertex as usize].get_or_insert((face, corner));
+            }
+        }
+        owners
+    }
+}
+
+/// A pass as it is filled. Faces of its patches come first, in their order, then those of the other shape that own an edge or vertex.
+struct Packer<'a> {
+    tables: &'a Tables,
+    pass: Pass,
+    /// The number of each face.
+    numbers: FxHashMap<u32, u32>,
+    /// Where each kind's weights begin.
+    offsets: FxHashMap<u32, u32>,
+    faces: Vec<TableFace>,
+    weights: Vec<f32>,
+}
+
+impl Packer<'_> {
+    fn add(&mut self, model: &Model, child: &Child) {
+        let topology = &self.tables.topology;
+        let vertices = topology.face(child.face);
+        let turn = self.turn(child.face);
+        let plan = self.number(child.face);
+        let valence = |i: usize| {
+            let corner = (i + turn as usize) % vertices.len();
+            let edges = topology.vertex_edges(vertices[corner]).len();
+            edges.min(255) as u8 * u8::from(i < vertices.len())
+        };
+        let patch = abi::Patch {
+            ptex: child.part.ptex,
+            flags: abi::PATCH_HALF
+                | abi::PATCH_REFINED
+                | turn << abi::PATCH_TURN_SHIFT
+                | child.child << abi::PATCH_CHILD_SHIFT,
+            controls: self.faces[plan as usize].controls,
+            plan,
+            valences: u32::from_le_bytes([0, 1, 2, 3].map(valence)),
+        };
+        self.pass.texture.push(texture(model, child.part, &patch));
+        self.pass.patches.push(patch);
+    }
+
+    /// By how many corners a face is turned.
+    fn turn(&self, face: u32) -> u32 {
+        let found = self.tables.configurations[face as usize].as_ref();
+        found.map_or(0, |found| found.turn)
+    }
+
+    /// The number of a face, which is added if it is new.
+    fn number(&mut self, face: u32) -> u32 {
+        if let Some(&number) = self.numbers.get(&face) {
+            return number;
+        }
+        let kind = self.tables.kinds[face as usize];
+        let table = &self.tables.weights[kind as usize];
+        let weights = *self.offsets.entry(kind).or_insert_with(|| {
+            let first = self.weights.len() as u32;
+            self.weights.extend_from_slice(table);
+            first
+        });
+        let found = self.tables.configurations[face as usize].as_ref();
+        let vertices = found.map_or(&[][..], |found| &found.vertices);
+        let Lattice { corners, segments } =
+            Lattice::new(domain(&self.tables.topology, face), self.tables.level);
+        let number = self.faces.len() as u32;
+        self.faces.push(TableFace {
+            controls: self.pass.controls.len() as u32,
+            count: vertices.len() as u32,
+            weights,
+            corners,
+            segments,
+        });
+        self.pass.controls.extend_from_slice(vertices);
+        self.numbers.insert(face, number);
+        number
+    }
+
+    /// Where a face's edges, then its vertices are evaluated, in the order of the patch's corners.
+    fn places(&mut self, owners: &Owners, face: u32) -> Vec<TablePlace> {
+        let topology = &self.tables.topology;
+        let arity = topology.face(face).len() as u32;
+        let turn = self.turn(face);
+        let corners = (turn..turn + arity).map(|corner| (corner % arity) as usize);
+        let edges = corners.clone().map(|side| {
+            let edge = topology.face_edges(face)[side];
+            let (owner, other) = owners.edges[edge as usize].unwrap_or((face, side as u32));
+            let same = topology.face(face)[side] == topology.face(owner)[other as usize];
+            (owner, other, if same { 0 } else { abi::PLACE_FLIPPED })
+        });
+        let vertices = corners.map(|corner| {
+            let vertex = topology.face(face)[corner];
+            let (owner, other) = owners.vertices[vertex as usize].unwrap_or((face, corner as u32));
+            (owner, other, 0)
+        });
+        let all: Vec<(u32, u32, u32)> = edges.chain(vertices).collect();
+        all.into_iter()
+            .map(|(owner, side, flags)| {
+                let arity = topology.face(owner).len() as u32;
+                let side = (side + arity - self.turn(owner)) % arity;
+                TablePlace {
+                    face: self.number(owner),
+                    side: side | flags,
+                }
+            })
+            .collect()
+    }
+
+    fn finish(mut self, places: &[TablePlace]) -> Pass {
+        self.pass.tables = vec![
+            bytemuck::cast_slice(&self.weights).to_vec(),
+            bytemuck::cast_slice(&self.faces).to_vec(),
+            bytemuck::cast_slice(places).to_vec(),
+        ];
+        self.pass
+    }
+}
+
+/// The texture coordinates at the corners of a patch, linear in the part that it belongs to; a triangle's last one twice.
+fn texture(model: &Model, part: Part, patch: &abi::Patch) -> [[f32; 2]; 4] {
+    let mut whole = Pass::new("bft", part.domain, 1, twin);
+    whole.texture.push(patches::texture(model, part, 0));
+    let corners = match part.domain {
+        Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]],
+    };
+    corners.map(|corner| whole.texture_coordinates(0, to_ptex(patch, corner)))
+}

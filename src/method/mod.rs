@@ -131,8 +131,8 @@ pub const METHODS: &[Method] = &[
     qas::METHOD,
     pn::METHOD,
     phong::METHOD,
-    flat::METHOD,
     bft::METHOD,
+    flat::METHOD,
 ];
 
 /// The method that a scheme is drawn by when nobody names one: the first in the table that does it.

@@ -17,10 +17,9 @@ fn device_and_host_compute_points_with_the_same_bits() {
     for (name, model) in shapes::triangular() {
         // The shared shapes would show nothing more.
         let small = name.starts_with("builtin") && model.mesh().vertex_count() < 500;
-        let scheme = model.mesh().options().scheme;
         for method in METHODS
             .iter()
-            .filter(|method| small && method.check(scheme).is_ok())
+            .filter(|method| small && method.check_model(&model).is_ok())
         {
             let prepared = prepare(&model, method.name);
             if prepared.points.count == 0 {

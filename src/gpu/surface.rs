@@ -7,61 +7,14 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::Result;
-use crate::gpu::batches::{Batch, Bounds, Cut, batches};
+use crate::gpu::batches::{Batch, Cut, batches};
 use crate::gpu::layout::BINDINGS;
+use crate::gpu::options::SurfaceOptions;
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{Buffer, Layout, failed};
 use crate::mesh::Model;
 use crate::method::{Controls, Pass, Prepared};
 use crate::tessellation::Spacing;
-
-/// Who gives patches their slots in the scratch ring.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Slots {
-    /// The control shaders, from a counter a batch.
-    #[default]
-    Counter,
-    /// The host, by summing up beforehand. The same slots whatever runs when or how often.
-    Host,
-}
-
-/// How a surface uses the device.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceOptions {
-    /// Bytes of the scratch ring.
-    pub ring_bytes: u64,
-    /// Who gives slots.
-    pub slots: Slots,
-    /// Vertices that can be captured at once; 0 for none.
-    pub capture_vertices: u32,
-    /// The greatest level that will be drawn, 1..=64.
-    pub greatest_level: f32,
-    /// How many times the batches are drawn after one [`cmd_prepare`](TessellatedSurface::cmd_prepare); see
-    /// [`again`](TessellatedSurface::again).
-    pub rounds: u32,
-    /// Whether [`cmd_draw`](TessellatedSurface::cmd_draw) records the barriers that batches need. Switch it off for dynamic rendering, which
-    /// allows no such barrier: before each batch that [waits](Batch::waits) the engine then ends rendering, records
-    /// [`cmd_ring_barrier`](super::ring::cmd_ring_barrier) with whatever its attachments need, and begins again with `LOAD`.
-    pub barriers: bool,
-    /// For tests: draws each vertex whose position has an odd number of bits a fiftieth of the picture away. Where faces differ on an edge by a
-    /// single bit, a hole opens that one can see. What is captured stays as it is.
-    pub amplify_cracks: bool,
-}
-
-impl Default for SurfaceOptions {
-    /// A ring of 1 MiB with counters, no capture, every level, barriers by `cmd_draw`.
-    fn default() -> SurfaceOptions {
-        SurfaceOptions {
-            ring_bytes: 1 << 20,
-            slots: Slots::Counter,
-            capture_vertices: 0,
-            rounds: 1,
-            greatest_level: 64.0,
-            barriers: true,
-            amplify_cracks: false,
-        }
-    }
-}
 
 /// A prepared model in buffers of the device. It borrows nothing; the owner calls [`TessellatedSurface::destroy`].
 #[derive(Debug)]
@@ -247,7 +200,7 @@ impl TessellatedSurface {
     /// # Errors
     /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch.
     pub fn batches(&self, cut: Cut) -> Result<Vec<Batch>> {
-        batches(&self.prepared, cut, bounds(self.options))
+        batches(&self.prepared, cut, self.options.bounds())
     }
 
     /// The batch for the next round: drawn in the same frame once more, for lines over a surface or a second view.
@@ -474,19 +427,6 @@ impl Maker<'_> {
     }
 }
 
-fn bounds(options: SurfaceOptions) -> Bounds {
-    let points = options.ring_bytes / 16;
-    let vertices = if options.capture_vertices == 0 {
-        u32::MAX / 2
-    } else {
-        options.capture_vertices
-    };
-    Bounds {
-        points: points.min(u64::from(u32::MAX / 2)) as u32,
-        vertices,
-    }
-}
-
 /// The counters that any level needs: two of the whole, and one a batch.
 fn counter_count(prepared: &Prepared, options: SurfaceOptions) -> Result<u64> {
     let mut most = 0;
@@ -495,7 +435,7 @@ fn counter_count(prepared: &Prepared, options: SurfaceOptions) -> Result<u64> {
             level: options.greatest_level,
             spacing,
         };
-        most = most.max(batches(prepared, cut, bounds(options))?.len());
+        most = most.max(batches(prepared, cut, options.bounds())?.len());
     }
     Ok(u64::from(abi::COUNTER_BATCHES) + most as u64 * u64::from(options.rounds))
 }

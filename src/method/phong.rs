@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces, patches};
+use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
@@ -29,14 +29,7 @@ pub const METHOD: Method = Method {
 };
 
 fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
-    let mut pass = Pass::new("phong", Domain::Triangles, 1, twin);
-    for part in patches::parts(model) {
-        triangles::add(&mut pass, model, part, model.topology().face(part.face), 0);
-    }
-    Ok(Prepared {
-        points: triangles::vertex_normals(model.topology()),
-        ..Prepared::of([pass])
-    })
+    Ok(triangles::by_vertices(model, "phong", twin))
 }
 
 /// How far points go to where the tangent planes want them; the paper's.

@@ -5,11 +5,12 @@ use glam::{Vec2, Vec3};
 use crate::abi;
 use crate::mesh::Model;
 use crate::mesh::topology::{Fan, Topology};
-use crate::method::Pass;
 use crate::method::patches::{self, Part};
 use crate::method::points::{Points, Row};
 use crate::method::surface::Controls;
+use crate::method::{Pass, Prepared, Twin};
 use crate::subdivision::Mask;
+use crate::tessellation::Domain;
 
 /// Adds the patch of a triangle, whose control points are the `points`.
 pub fn add(pass: &mut Pass, model: &Model, part: Part, points: &[u32], flags: u32) {
@@ -21,8 +22,21 @@ pub fn add(pass: &mut Pass, model: &Model, part: Part, points: &[u32], flags: u3
     pass.patches.push(patch);
 }
 
+/// What a method needs that knows nothing but vertices and their normals: a patch a triangle, from the points of its corners.
+pub fn by_vertices(model: &Model, shader: &'static str, twin: Twin) -> Prepared {
+    let topology = model.topology();
+    let mut pass = Pass::new(shader, Domain::Triangles, 1, twin);
+    for part in patches::parts(model) {
+        add(&mut pass, model, part, topology.face(part.face), 0);
+    }
+    Prepared {
+        points: vertex_normals(topology),
+        ..Prepared::of([pass])
+    }
+}
+
 /// A point for each vertex: where it is, with the normal of the faces around it, each by its area (the sum of cross products of the edges).
-pub fn vertex_normals(topology: &Topology) -> Points {
+fn vertex_normals(topology: &Topology) -> Points {
     let mut points = Points::default();
     points.begin(abi::POINTS_BLEND, 0);
     let vertices = 0..topology.vertex_count() as u32;
@@ -82,8 +96,8 @@ pub fn corner_weights(uv: Vec2) -> [f32; 3] {
     [(1.0 - uv.x) - uv.y, uv.x, uv.y]
 }
 
-/// The sum over three corners, then over three edges from corner i to corner i + 1 and a point in the middle: on an edge only two of the first
-/// and one of the second are there, so that both sides have the same bits. Twin of `corner_sum` in `glsl/lib/triangle.glsl`.
+/// A weighted sum over three corners, or over three edges. On an edge only two of the corners count, or one of the edges: so both sides have the
+/// same bits. Twin of `sum_of_three` in `glsl/lib/triangle.glsl`.
 pub fn sum_of_three(weights: [f32; 3], points: [Vec3; 3]) -> Vec3 {
     (weights[0] * points[0] + weights[1] * points[1]) + weights[2] * points[2]
 }

@@ -37,6 +37,15 @@ pub fn all() -> Vec<(String, Model)> {
     own.into_iter().chain(catmark()).collect()
 }
 
+/// A mesh under a scheme, cut into triangles if that takes no others; None where the scheme knows nothing of its tags.
+pub fn under(mesh: &ControlMesh, scheme: Scheme) -> Option<Model> {
+    let mesh = match scheme.is_triangular() {
+        true => triangulated(mesh, Triangulation::default()).expect("a sound mesh"),
+        false => mesh.clone(),
+    };
+    mesh.with_scheme(scheme).ok().map(Model::new)
+}
+
 /// The built-in shapes cut into triangles, and the shared ones that are made of triangles, under Loop's scheme and, where it knows their tags,
 /// the butterfly's.
 pub fn triangular() -> Vec<(String, Model)> {
@@ -45,16 +54,13 @@ pub fn triangular() -> Vec<(String, Model)> {
         let name = common::stem(&file);
         Some((name, read_obj(&file).ok()?)).filter(|(name, _)| name.starts_with("loop"))
     });
-    let under = |(name, mesh): (String, ControlMesh)| {
-        let cut = triangulated(&mesh, Triangulation::default()).expect("a sound mesh");
-        [Scheme::Loop, Scheme::Butterfly].map(|scheme| {
-            let mesh = cut.clone().with_scheme(scheme).ok()?;
-            Some((format!("{name} {scheme}"), Model::new(mesh)))
-        })
+    let under_both = |(name, mesh): (String, ControlMesh)| {
+        [Scheme::Loop, Scheme::Butterfly]
+            .map(|scheme| Some((format!("{name} {scheme}"), under(&mesh, scheme)?)))
     };
     own.into_iter()
         .chain(shared)
-        .flat_map(under)
+        .flat_map(under_both)
         .flatten()
         .collect()
 }

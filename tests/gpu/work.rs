@@ -2,7 +2,7 @@
 
 use hullform::abi;
 use hullform::gpu::{Cut, Fill};
-use hullform::mesh::{ControlMesh, Model, Scheme, Triangulation, builtin, triangulated};
+use hullform::mesh::{Model, builtin};
 use hullform::method::{METHODS, Prepared};
 
 use crate::common::gpu::{Gpu, Loaded, SPACINGS, capturing, cut, over_patches, prepare, vertices};
@@ -21,16 +21,6 @@ fn patches(model: &Model, prepared: &Prepared) -> u64 {
             n => n as u64,
         })
         .sum()
-}
-
-/// A mesh under a scheme, cut into triangles if that takes no others.
-fn under(mesh: ControlMesh, scheme: Scheme) -> Model {
-    let mesh = if scheme.is_triangular() {
-        triangulated(&mesh, Triangulation::default()).expect("a sound mesh")
-    } else {
-        mesh
-    };
-    Model::new(mesh.with_scheme(scheme).expect("the scheme knows its tags"))
 }
 
 /// Draws at a cut and compares patches, evaluations, triangles and points with their prediction.
@@ -69,7 +59,8 @@ fn the_drivers_counts_are_the_predicted_ones() {
     for name in ["cube", "ngons", "sheet", "creased-torus", "hull", "pole-64"] {
         let whole = shapes::built_in(name);
         for method in METHODS {
-            let model = under(whole.mesh().clone(), method.schemes[0]);
+            let model =
+                shapes::under(whole.mesh(), method.schemes[0]).expect("the scheme knows its tags");
             if method.check_model(&model).is_err() {
                 continue;
             }
@@ -126,7 +117,7 @@ fn holes_are_not_drawn() {
     let mesh = mesh.build().expect("a cube with a hole is sound");
     let at = cut(4.0, SPACINGS[0]);
     for method in METHODS {
-        let model = under(mesh.clone(), method.schemes[0]);
+        let model = shapes::under(&mesh, method.schemes[0]).expect("it has no tags");
         let prepared = prepare(&model, method.name);
         let options = capturing(&prepared, &[at]);
         let loaded = gpu.load(&model, prepared, &gpu.device.info().workarounds, options);

@@ -142,6 +142,33 @@ fn a_plan_is_told_in_words() {
     );
 }
 
+/// By its whole path: scripts are called from anywhere.
+#[test]
+fn a_picture_is_said_to_be_where_it_is() {
+    if !has_device() {
+        return;
+    }
+    let (_folder, png) = scratch("out.png");
+    let drawn = run(&["render", "builtin:cube", "-o", &png, "--size", "32x32"]);
+    assert_eq!(
+        stdout(&drawn),
+        format!("wrote {png}\n"),
+        "{}",
+        stderr(&drawn)
+    );
+    let compared = run(&[
+        "compare",
+        "builtin:cube",
+        "-o",
+        &png,
+        "--size",
+        "32x32",
+        "--level",
+        "2",
+    ]);
+    assert!(stdout(&compared).ends_with(&format!("wrote {png}\n")));
+}
+
 #[test]
 fn an_unknown_method_or_device_is_named() {
     let (folder, png) = scratch("out.png");

@@ -4,7 +4,7 @@ use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
 use crate::options::{self, Global, Size};
-use crate::output::{Format, Pending, picture, png};
+use crate::output::{Format, Pending, picture, png, wrote};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
 use glam::{Vec2, Vec3};
@@ -196,8 +196,7 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
     if global.prints_json() {
         print(&format!("{stats:#}"))
     } else {
-        tracing::info!("wrote {}", arguments.output.display());
-        Ok(())
+        print(&wrote(&arguments.output))
     }
 }
 

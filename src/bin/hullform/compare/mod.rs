@@ -21,7 +21,7 @@ use crate::camera::View;
 use crate::capture::capture;
 use crate::gpu::Gpu;
 use crate::options::{self, Global, Size};
-use crate::output::{Format, Pending, Surface, picture as composed, png};
+use crate::output::{Format, Pending, Surface, picture as composed, png, wrote};
 use crate::{model, print, progress, render};
 use errors::{Errors, Known, Reference, Twin};
 use page::Page;
@@ -320,6 +320,6 @@ fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> S
             .iter()
             .map(|refusal| format!("{:16}    refused", refusal.name)),
     );
-    lines.push(format!("wrote {}", arguments.output.display()));
+    lines.push(wrote(&arguments.output));
     lines.join("\n")
 }

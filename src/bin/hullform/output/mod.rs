@@ -13,6 +13,12 @@ pub use pending::Pending;
 use hullform::{Error, Result};
 use std::path::Path;
 
+/// Where a picture went, in words: by its whole path, since scripts are called from anywhere.
+pub fn wrote(path: &Path) -> String {
+    let whole = std::path::absolute(path);
+    format!("wrote {}", whole.as_deref().unwrap_or(path).display())
+}
+
 /// A file format, known by the extension of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {

@@ -254,7 +254,7 @@ impl TessellatedSurface {
 
     /// Writes the slots that the host gives at a cut.
     ///
-    /// Needed before drawing with [`Slots::Host`], whenever cut or batches change. No submitted command may still use this surface.
+    /// Needed before drawing with [`Slots::Host`](super::Slots::Host), whenever cut or batches change. No submitted command may still use this surface.
     pub fn write_slots(&mut self, cut: Cut, batches: &[Batch]) {
         for batch in batches {
             let pass = &self.prepared.passes[batch.pass];

@@ -19,14 +19,15 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::abi::{self, TableFace, TablePlace};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, corner_weights};
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
-use crate::plan::PlanOptions;
+use crate::method::{
+    Contract, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals, TableOptions,
+};
 use crate::subdivision::{Blend, Mask, Refinement, refine_all, scheme_rings};
 use crate::tessellation::Domain;
 
@@ -51,32 +52,31 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    uses_tables: true,
     covers: covered::check,
     prepare,
 };
 
-/// The greatest level of the tables: a patch has 2^level segments an edge, half of what its face has.
-const GREATEST_TABLE_LEVEL: u32 = 6;
-
-fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
-    let level = table_level(options);
+fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
+    let TableOptions { level, normals } = options.tables.check()?;
+    if normals != TableNormals::Shading(1) {
+        return Err(Error::Option {
+            option: "--shading-level, --geometric-normals",
+            problem: format!("there are no {normals:?} normals yet"),
+            remedy: "leave it out".into(),
+        });
+    }
     let scheme = model.mesh().options().scheme;
     let Refinement {
         topology, masks, ..
     } = refine_all(model.topology(), scheme);
     let points = points(&topology, &masks);
     let tables = Tables::new(topology, scheme, level);
-    let [quads, triangles] = pack::passes(model, &tables, options.max_level.min(level + 1));
+    let [quads, triangles] = pack::passes(model, &tables);
     Ok(Prepared {
         points,
         ..Prepared::of([quads, triangles])
     })
-}
-
-/// The level of the tables is one less than that of plans, since a patch is half as long as its face: 5 by default, as in section II-A.
-fn table_level(options: PlanOptions) -> u32 {
-    let level = options.max_level.saturating_sub(1);
-    level.clamp(1, GREATEST_TABLE_LEVEL)
 }
 
 /// The "computational entries" of section II-B: the refined vertices over the control vertices, and the rings around them that give normals.

@@ -6,6 +6,7 @@
 mod bft;
 mod displacement;
 mod flat;
+mod options;
 mod patches;
 mod phong;
 mod pn;
@@ -20,10 +21,10 @@ use glam::Vec2;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
-use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
 pub use displacement::Displacement;
+pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use points::Points;
 pub use quadtree::PlanStatistics;
 pub use surface::{Controls, SurfacePoint};
@@ -70,20 +71,22 @@ pub struct Method {
     pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
+    /// Whether it goes by [`MethodOptions::tables`].
+    pub uses_tables: bool,
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
-    prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
+    prepare: fn(&Model, MethodOptions) -> Result<Prepared>,
 }
 
 impl Method {
-    /// Prepares a model.
+    /// Prepares a model. Options of other methods do not count.
     ///
     /// # Errors
-    /// As [`Method::check_model`].
-    pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
+    /// As [`Method::check_model`]; [`Error::Option`] names an option that is out of range.
+    pub fn prepare(&self, model: &Model, options: impl Into<MethodOptions>) -> Result<Prepared> {
         self.check_model(model)?;
-        (self.prepare)(model, options)
+        (self.prepare)(model, options.into())
     }
 
     /// Whether the method can draw a model, without preparing it.

@@ -2,13 +2,13 @@
 
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::Global;
+use crate::options::{Chosen, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
 use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Method, Pass, to_ptex};
+use hullform::method::{Displacement, Pass, to_ptex};
 use hullform::tessellation::triangulate;
 use hullform::{Error, Result, abi};
 
@@ -19,7 +19,7 @@ const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
 pub fn capture(
     gpu: &Gpu,
     model: &Model,
-    method: &Method,
+    chosen: Chosen,
     cut: Cut,
     global: &Global,
 ) -> Result<Surface> {
@@ -30,7 +30,7 @@ pub fn capture(
         greatest_level: cut.level,
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, model, method, options)?;
+    let mut drawing = Drawing::new(gpu, model, chosen, options)?;
     drawing.upload()?;
     // Nothing is rasterised, but draws need a render pass.
     let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;

@@ -9,11 +9,10 @@ use hullform::gpu::{
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::Method;
-use hullform::plan::PlanOptions;
 use hullform::{Result, tessellation::Spacing};
 
 use crate::gpu::Gpu;
+use crate::options::Chosen;
 
 /// A model on the device, and how long it took to get there.
 pub struct Drawing<'a> {
@@ -31,11 +30,11 @@ impl<'a> Drawing<'a> {
     pub fn new(
         gpu: &'a Gpu,
         model: &Model,
-        method: &Method,
+        chosen: Chosen,
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
         let started = Instant::now();
-        let prepared = method.prepare(model, PlanOptions::default())?;
+        let prepared = chosen.prepare(model)?;
         let planned = Instant::now();
         let device = gpu.device.raw();
         let mut drawing = Drawing {

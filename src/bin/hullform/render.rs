@@ -3,7 +3,7 @@
 use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::{self, Global, Size};
+use crate::options::{self, Chosen, Global, Size};
 use crate::output::{Format, Pending, picture, png, wrote};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Method, Prepared};
+use hullform::method::{Displacement, Prepared};
 use hullform::tessellation::Domain;
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
@@ -74,7 +74,7 @@ pub enum Shading {
 /// Everything to be drawn.
 struct Scene<'a> {
     model: &'a Model,
-    method: &'a Method,
+    chosen: Chosen,
     cut: Cut,
     sight: Sight,
     shading: Shading,
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
     let started = Instant::now();
     let mesh = model::load(arguments.model.as_deref(), &arguments.shape)?;
-    arguments.cut.method(mesh.options().scheme)?;
+    arguments.cut.chosen(mesh.options().scheme)?;
     let model = Model::new(mesh);
     let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
@@ -135,7 +135,7 @@ fn draw_picture(
     let (target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
-        method: arguments.cut.method(model.mesh().options().scheme)?,
+        chosen: arguments.cut.chosen(model.mesh().options().scheme)?,
         cut: arguments.cut.cut(),
         sight: Sight::Framed(arguments.sight.camera, width as f32 / height as f32),
         shading: arguments.shading,
@@ -172,14 +172,14 @@ pub fn draw_lit(
     gpu: &Gpu,
     target: &OffscreenTarget,
     model: &Model,
-    method: &Method,
+    chosen: Chosen,
     cut: Cut,
     view: View,
     global: &Global,
 ) -> Result<()> {
     let scene = Scene {
         model,
-        method,
+        chosen,
         cut,
         sight: Sight::Given(view),
         shading: Shading::Lit,
@@ -224,7 +224,7 @@ fn draw_with(
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, scene.model, scene.method, options)?;
+    let mut drawing = Drawing::new(gpu, scene.model, scene.chosen, options)?;
     drawing.upload()?;
     let batches = drawing.surface().batches(scene.cut)?;
     drawing.write_slots(scene.cut, &batches);
@@ -329,7 +329,7 @@ fn statistics(
     json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": scene.method.name,
+        "method": scene.chosen.method.name,
         "level": scene.cut.level,
         "spacing": scene.cut.spacing.name(),
         "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },

@@ -11,7 +11,7 @@ use crate::method::{Pass, to_ptex};
 use crate::tessellation::Domain;
 
 /// The passes of quads and of triangles, which may be empty.
-pub fn passes(model: &Model, tables: &Tables, max_level: u32) -> [Pass; 2] {
+pub fn passes(model: &Model, tables: &Tables) -> [Pass; 2] {
     let owners = Owners::new(tables);
     let children = children(model);
     [("bft_quads", Domain::Quads), ("bft", Domain::Triangles)].map(|(shader, domain)| {
@@ -23,7 +23,8 @@ pub fn passes(model: &Model, tables: &Tables, max_level: u32) -> [Pass; 2] {
             faces: Vec::new(),
             weights: Vec::new(),
         };
-        packer.pass.max_level = max_level;
+        // Of faces, whose edges are two patches long.
+        packer.pass.max_level = tables.level + 1;
         let faces = children.iter().filter(|child| child.part.domain == domain);
         for child in faces.clone() {
             packer.add(model, child);

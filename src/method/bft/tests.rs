@@ -61,8 +61,8 @@ fn fan(n: usize, closed: bool) -> ControlMesh {
 
 /// The greatest distance over the diagonal between the twin and the truth, at every `stride`th point of the lattice of every patch.
 fn worst(model: &Model, level: u32, stride: u32) -> f64 {
-    let options = PlanOptions {
-        max_level: level + 1,
+    let options = TableOptions {
+        level,
         ..Default::default()
     };
     let prepared = METHOD.prepare(model, options).expect("tables cover it");
@@ -124,7 +124,7 @@ fn the_lattice_lies_on_the_limit_at_every_valence() {
 
 #[test]
 fn every_table_level_is_on_the_limit() {
-    for level in 1..=GREATEST_TABLE_LEVEL {
+    for level in 1..=TableOptions::GREATEST_LEVEL {
         let off = worst(&model(fan(7, false), Scheme::Loop), level, 101);
         assert!(off <= 1e-6, "level {level}: {off}");
     }
@@ -219,7 +219,7 @@ fn triangles_beside_quads_lie_on_the_limit() {
 
 fn hold_edges(model: &Model) {
     let prepared = METHOD
-        .prepare(model, PlanOptions::default())
+        .prepare(model, MethodOptions::default())
         .expect("tables cover it");
     let controls = prepared.controls(model.positions());
     let refined = refine_all(model.topology(), model.mesh().options().scheme).topology;
@@ -269,7 +269,7 @@ fn on_edge(domain: Domain, side: usize, t: f32) -> Vec2 {
 fn what_tables_do_not_cover_is_refused_by_name() {
     let refusal = |mesh: ControlMesh| {
         let model = Model::new(mesh);
-        match METHOD.prepare(&model, PlanOptions::default()) {
+        match METHOD.prepare(&model, MethodOptions::default()) {
             Err(error @ Error::Input { .. }) => error.to_string(),
             other => format!("{other:?}"),
         }

@@ -468,7 +468,7 @@ fn shading_begins_at_the_level_that_is_asked_for() {
                 "{scheme} {} faces, level {from}: {worst:e}",
                 model.mesh().face_count()
             );
-            assert!(worst <= 4e-6, "{scheme}, level {from}: {worst}");
+            assert!(worst <= 3e-6, "{scheme}, level {from}: {worst}");
             assert!(
                 !fields.contains(&field),
                 "each level has normals of its own"
@@ -476,6 +476,12 @@ fn shading_begins_at_the_level_that_is_asked_for() {
             fields.push(field);
         }
     }
+}
+
+/// The butterfly's limit has no tangent plane at boundary vertices of other than three faces.
+fn is_irregular_boundary(topology: &Topology, vertex: u32) -> bool {
+    let faces = topology.vertex_faces(vertex).len();
+    faces != topology.vertex_edges(vertex).len() && faces != 3
 }
 
 #[test]
@@ -493,16 +499,23 @@ fn geometric_normals_are_those_of_the_limit() {
             level: 3,
             normals: TableNormals::Geometric,
         };
+        let scheme = model.mesh().options().scheme;
+        let refined = refine_all(model.topology(), scheme).topology;
         let mut worst = 0.0f64;
         each_normal(model, options, 11, |(pass, patch, uv, own)| {
             let record = &pass.patches[patch];
+            if let Spot::Corner(corner) = spot(pass.domain, Vec2::from(uv)) {
+                let vertex = pass.controls[(record.controls + corner) as usize];
+                if scheme == Scheme::Butterfly && is_irregular_boundary(&refined, vertex) {
+                    return;
+                }
+            }
             let [u, v] = to_ptex(record, uv).map(f64::from);
             let right = truth.evaluate(record.ptex as usize, u, v);
             let right = right.expect("holes are not drawn").normal();
             let own = own.as_dvec3();
             worst = worst.max(own.cross(right).length().atan2(own.dot(right)));
         });
-        let scheme = model.mesh().options().scheme;
         println!("{scheme} {} faces: {worst:e}", model.mesh().face_count());
         assert!(worst <= 1e-5, "{scheme}: {worst}");
     }

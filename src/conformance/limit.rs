@@ -18,8 +18,8 @@ use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
 use crate::method::{
-    Controls, METHODS, Method, MethodOptions, Pass, Prepared, Reproduces, method, method_for,
-    to_ptex,
+    Controls, METHODS, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals, method,
+    method_for, to_ptex,
 };
 use crate::plan::{PlanOptions, Plans, walk};
 use crate::subdivision::LimitSurface;
@@ -81,6 +81,7 @@ fn cases() -> Vec<Case> {
     cases.extend(levels());
     cases.extend(shapes());
     cases.extend(lattice::cases());
+    cases.extend(lattice::tables());
     cases.extend(places());
     cases.extend((0..30).map(|number| {
         let setup = Setup::new(9.0, SPACINGS[number % 2]);
@@ -301,7 +302,7 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
     let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
     let ruler = Ruler {
         model,
-        right: right(context, model, method, &passes)?,
+        right: right(context, model, method, &passes, setup.options)?,
         unit: diagonal(model.mesh()) * 0.5f64.powi(23),
         most: within(method) * 2f64.powi(23),
         most_degrees: method.contract.normals.unwrap_or(0.1),
@@ -346,17 +347,31 @@ enum Right {
     Twin(Controls),
     /// Positions of the surface in f64 on the pass' lattice, the method's own off it; normals are its own everywhere.
     Lattice(Box<LimitSurface>, Controls),
+    /// The same, and on the lattice the surface's normals as well.
+    LatticeNormals(Box<LimitSurface>, Controls),
 }
 
 /// The truth of a method's contract: the limit, everywhere or on a lattice, or linear faces. A method with a surface of its own, and plain
 /// triangles, are held to the CPU's twin.
-fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared) -> Result<Right> {
+fn right(
+    context: &Context,
+    model: &Model,
+    method: &Method,
+    prepared: &Prepared,
+    options: MethodOptions,
+) -> Result<Right> {
     let own = model.mesh().options().scheme;
     let moved = if context.is_wrong() { 1e-3 } else { 0.0 };
     let twin = || twin(model, prepared, moved);
     Ok(match method.contract.reproduces {
         Reproduces::Limit(_) => Right::Truth(truth(model.mesh(), own, moved)?),
-        Reproduces::LimitOnLattice(_) => Right::Lattice(truth(model.mesh(), own, moved)?, twin()),
+        Reproduces::LimitOnLattice(_) => {
+            let lattice = match options.tables.normals {
+                TableNormals::Geometric => Right::LatticeNormals,
+                TableNormals::Shading(_) => Right::Lattice,
+            };
+            lattice(truth(model.mesh(), own, moved)?, twin())
+        }
         Reproduces::Faces(_) if own == Scheme::CatmullClark => {
             Right::Truth(truth(model.mesh(), Scheme::Bilinear, moved)?)
         }
@@ -448,6 +463,10 @@ impl Ruler<'_> {
                     false => Some(twin),
                 }
             }
+            Right::LatticeNormals(truth, controls) => match pass.is_on_lattice(vertex.uv) {
+                true => self.of_truth(truth, ptex, uv),
+                false => Some(self.of_twin(controls, pass, vertex)),
+            },
         };
         let Some((position, normal)) = right else {
             check.hold(false, || format!("ptex face {ptex} is a hole"));

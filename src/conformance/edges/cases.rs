@@ -11,7 +11,7 @@ use crate::conformance::{Case, Context};
 use crate::error::{Error, Result};
 use crate::gpu::Slots;
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
-use crate::method::MethodOptions;
+use crate::method::{MethodOptions, TableNormals, TableOptions};
 use crate::plan::PlanOptions;
 
 const RULE: &str = "on every edge and spoke all faces have the same vertices, and there and at every vertex the same bits of position and normal";
@@ -38,6 +38,7 @@ pub(super) fn cases() -> Vec<Case> {
     cases.extend(triangles());
     cases.extend(ways_of_drawing());
     cases.extend(plans());
+    cases.extend(tables());
     cases.extend(displaced());
     cases.extend(places());
     cases.extend(random());
@@ -308,6 +309,31 @@ fn plans() -> impl Iterator<Item = Case> {
         case(name, setup, move |_| builtin(shape))
     });
     shallow.chain(refined)
+}
+
+/// Tables of another level, and with other normals.
+fn tables() -> impl Iterator<Item = Case> {
+    let options = [
+        ("level_2", 2, TableNormals::Shading(1)),
+        ("shading_0", 5, TableNormals::Shading(0)),
+        ("shading_2", 5, TableNormals::Shading(2)),
+        ("geometric", 5, TableNormals::Geometric),
+    ];
+    options.into_iter().flat_map(|(word, level, normals)| {
+        let meshes = [
+            ("ngons", Scheme::CatmullClark),
+            ("sheet", Scheme::Butterfly),
+            ("pole-7", Scheme::LoopStam),
+        ];
+        meshes.map(|(shape, scheme)| {
+            let setup = Setup {
+                options: TableOptions { level, normals }.into(),
+                ..Setup::new(&[1.0, 3.0, 8.0])
+            };
+            let name = format!("edges.tables.{word}-{shape}-{scheme}");
+            case(name, setup, move |_| under(builtin(shape)?, scheme))
+        })
+    })
 }
 
 fn displaced() -> impl Iterator<Item = Case> {

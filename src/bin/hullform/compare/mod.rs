@@ -9,7 +9,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::Vec3;
-use hullform::gpu::Cut;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{METHODS, Method, Prepared, method};
 use hullform::plan::PlanOptions;
@@ -20,7 +19,7 @@ use serde_json::{Value, json};
 use crate::camera::View;
 use crate::capture::capture;
 use crate::gpu::Gpu;
-use crate::options::{self, Global, Size};
+use crate::options::{self, Cutting, Global, Size};
 use crate::output::{Format, Pending, Surface, picture as composed, png, wrote};
 use crate::{model, print, progress, render};
 use errors::{Errors, Known, Reference, Twin};
@@ -85,7 +84,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
     let asked = asked(&arguments.methods, model.mesh().options().scheme)?;
     let file = Pending::create(&arguments.output)?;
-    let (able, refusals) = sort_out(&model, &asked)?;
+    let (able, refusals) = sort_out(&model, &asked, arguments.steps.cutting())?;
     let mut known = Known::new(reference(&model, against)?);
     let gpu = Gpu::open(global)?;
     let mut columns = Vec::new();
@@ -145,11 +144,17 @@ fn renamed(error: Error, option: &'static str, also: &str) -> Error {
 }
 
 /// The methods that can draw the model, with the number of their patches, and those that refuse.
-fn sort_out(model: &Model, methods: &[&'static Method]) -> Result<(Vec<Able>, Vec<Refusal>)> {
+fn sort_out(
+    model: &Model,
+    methods: &[&'static Method],
+    cutting: Cutting,
+) -> Result<(Vec<Able>, Vec<Refusal>)> {
     let (mut able, mut refusals) = (Vec::new(), Vec::new());
     for &method in methods {
         match progress::during("planning", |_| {
-            method.prepare(model, PlanOptions::default())
+            let prepared = method.prepare(model, PlanOptions::default())?;
+            cutting.backend.check(&prepared, cutting.cut.level)?;
+            Ok::<_, Error>(prepared)
         }) {
             Ok(prepared) => able.push((method, patches(&prepared))),
             Err(error) => {
@@ -192,8 +197,10 @@ fn measure(
     arguments: &Arguments,
     global: &Global,
 ) -> Result<Column> {
-    let cut = arguments.steps.cut();
-    let surface = progress::during("tessellating", |_| capture(gpu, model, method, cut, global))?;
+    let cutting = arguments.steps.cutting();
+    let surface = progress::during("tessellating", |_| {
+        capture(gpu, model, method, cutting, None, global)
+    })?;
     progress::during("evaluating the reference", |bar| known.learn(&surface, bar));
     Ok(Column {
         method,
@@ -232,12 +239,21 @@ fn draw(
 ) -> Result<Page> {
     let Size { width, height } = arguments.size;
     let (target, factor) = render::target(gpu, width, height)?;
-    let cut: Cut = arguments.steps.cut();
+    let cutting = arguments.steps.cutting();
     let view = view(model, columns, arguments);
     let finish = || composed::compose(&target.read_pixels(), width, height, factor);
     let mut rows = Vec::new();
     for column in columns {
-        render::draw_lit(gpu, &target, model, column.method, cut, view, global)?;
+        render::draw_lit(
+            gpu,
+            &target,
+            model,
+            column.method,
+            cutting,
+            view,
+            arguments.size,
+            global,
+        )?;
         let lit = finish();
         let mut tiles = vec![lit];
         let maps = [&column.errors.positions, &column.errors.normals];
@@ -278,6 +294,7 @@ fn report(
         "model": arguments.model,
         "against": arguments.against,
         "level": arguments.steps.level,
+        "backend": arguments.steps.cutting().backend.name(),
         "methods": methods,
         "refused": refused.collect::<Vec<_>>(),
     });

@@ -100,6 +100,8 @@ const uint CHILD_OF_QUAD = 1u;
 const uint CHILD_OF_TRIANGLE = 5u;
 // Flag of a `TablePlace`: the edge runs against the direction of that face.
 const uint PLACE_FLIPPED = 2147483648u;
+// Flag of a `TableFace`'s normals: the weights there are two rows a point, of the limit's tangents.
+const uint TABLE_TANGENTS = 2147483648u;
 // Frame flag: spacing is fractional-even, else equal.
 const uint FRAME_FRACTIONAL_EVEN = 1u;
 // Frame flag: slots come from the host, else from the batch's counter.
@@ -243,6 +245,9 @@ struct TableFace {
     uint corners;
     // Segments of an edge: a power of two.
     uint segments;
+    // The face, with the same lattice, whose points and weights give normals: itself where they are those of positions. With
+    // `TABLE_TANGENTS`, which give the limit's own.
+    uint normals;
 };
 
 // Where an edge or a vertex is evaluated: on a face that all who share it agree upon.

@@ -208,6 +208,8 @@ constants! {
     CHILD_OF_TRIANGLE = 5;
     /// Flag of a `TablePlace`: the edge runs against the direction of that face.
     PLACE_FLIPPED = 0x8000_0000;
+    /// Flag of a `TableFace`'s normals: the weights there are two rows a point, of the limit's tangents.
+    TABLE_TANGENTS = 0x8000_0000;
 
     /// Frame flag: spacing is fractional-even, else equal.
     FRAME_FRACTIONAL_EVEN = 1;
@@ -357,6 +359,9 @@ structs! {
         corners: u32,
         /// Segments of an edge: a power of two.
         segments: u32,
+        /// The face, with the same lattice, whose points and weights give normals: itself where they are those of positions. With
+        /// `TABLE_TANGENTS`, which give the limit's own.
+        normals: u32,
     }
 
     /// Where an edge or a vertex is evaluated: on a face that all who share it agree upon.

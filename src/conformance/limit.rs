@@ -18,7 +18,8 @@ use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
 use crate::method::{
-    Controls, METHODS, Method, Pass, Prepared, Reproduces, method, method_for, to_ptex,
+    Controls, METHODS, Method, MethodOptions, Pass, Prepared, Reproduces, method, method_for,
+    to_ptex,
 };
 use crate::plan::{PlanOptions, Plans, walk};
 use crate::subdivision::LimitSurface;
@@ -43,7 +44,7 @@ const SAMPLES: usize = 1500;
 struct Setup {
     /// By default whichever draws the scheme.
     method: Option<&'static str>,
-    options: PlanOptions,
+    options: MethodOptions,
     cut: Cut,
     /// Only what is evaluated so.
     kind: Option<Kind>,
@@ -53,7 +54,7 @@ impl Setup {
     fn new(level: f32, spacing: Spacing) -> Setup {
         Setup {
             method: None,
-            options: PlanOptions::default(),
+            options: MethodOptions::default(),
             cut: cut(level, spacing),
             kind: None,
         }
@@ -207,7 +208,7 @@ fn depths() -> impl Iterator<Item = Case> {
         };
         let level = (1u32 << max_level).min(20) as f32;
         let setup = Setup {
-            options,
+            options: options.into(),
             ..Setup::new(level, Spacing::Equal)
         };
         case(format!("limit.depth.{max_level}_levels"), setup, |_| {
@@ -215,10 +216,10 @@ fn depths() -> impl Iterator<Item = Case> {
         })
     });
     let refined = Setup {
-        options: PlanOptions {
+        options: MethodOptions::from(PlanOptions {
             direct_creases: false,
             ..Default::default()
-        },
+        }),
         ..Setup::new(9.0, Spacing::Equal)
     };
     let name = "limit.depth.refined_creases".to_owned();

@@ -6,6 +6,7 @@
 mod bft;
 mod displacement;
 mod flat;
+mod options;
 mod outline;
 mod patches;
 mod phong;
@@ -22,10 +23,10 @@ use glam::Vec2;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
-use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
 pub use displacement::Displacement;
+pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use points::Points;
 pub use quadtree::PlanStatistics;
@@ -74,20 +75,22 @@ pub struct Method {
     pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
+    /// Whether it goes by [`MethodOptions::tables`].
+    pub uses_tables: bool,
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
-    prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
+    prepare: fn(&Model, MethodOptions) -> Result<Prepared>,
 }
 
 impl Method {
-    /// Prepares a model.
+    /// Prepares a model. Options of other methods do not count.
     ///
     /// # Errors
-    /// As [`Method::check_model`].
-    pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
+    /// As [`Method::check_model`]; [`Error::Option`] names an option that is out of range.
+    pub fn prepare(&self, model: &Model, options: impl Into<MethodOptions>) -> Result<Prepared> {
         self.check_model(model)?;
-        let mut prepared = (self.prepare)(model, options)?;
+        let mut prepared = (self.prepare)(model, options.into())?;
         prepared.outline = Outline::new(model.topology());
         for pass in &mut prepared.passes {
             pass.sides = outline::sides_of(model, &pass.patches);

@@ -7,8 +7,7 @@ use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces};
-use crate::plan::PlanOptions;
+use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
 
 /// The row of the table.
@@ -24,11 +23,12 @@ pub const METHOD: Method = Method {
         interpolates: true,
         watertight: true,
     },
+    uses_tables: false,
     covers: method::every_mesh,
     prepare,
 };
 
-fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
     Ok(triangles::by_vertices(model, "phong", twin))
 }
 

@@ -3,13 +3,13 @@
 use crate::camera::Camera;
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::{Cutting, Global};
+use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
 use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Method, to_ptex};
+use hullform::method::{Displacement, to_ptex};
 use hullform::{Error, Result, abi};
 
 /// Vertices that are captured at once: as many as 64 MiB hold.
@@ -23,7 +23,7 @@ const SEEN: [f32; 2] = [1280.0, 720.0];
 pub fn capture(
     gpu: &Gpu,
     model: &Model,
-    method: &Method,
+    chosen: Chosen,
     cutting: Cutting,
     camera: Option<Camera>,
     global: &Global,
@@ -37,7 +37,7 @@ pub fn capture(
         greatest_level: cut.level,
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, model, method, options)?;
+    let mut drawing = Drawing::new(gpu, model, chosen, options)?;
     drawing.upload()?;
     // Nothing is rasterised, but draws need a render pass.
     let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;

@@ -10,15 +10,14 @@ use hullform::gpu::{
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Method};
-use hullform::plan::PlanOptions;
+use hullform::method::DepthTags;
 use hullform::tessellation::{Domain, Spacing};
 use hullform::{Error, Result};
 
 use crate::adaptive::Seen;
 use crate::camera::{self, Camera};
 use crate::gpu::Gpu;
-use crate::options::Cutting;
+use crate::options::{Chosen, Cutting};
 
 /// A model on the device, and how long it took to get there.
 pub struct Drawing<'a> {
@@ -36,7 +35,7 @@ impl<'a> Drawing<'a> {
     pub fn new(
         gpu: &'a Gpu,
         model: &Model,
-        method: &Method,
+        chosen: Chosen,
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
         if options.backend == Backend::Geometry
@@ -49,7 +48,7 @@ impl<'a> Drawing<'a> {
             });
         }
         let started = Instant::now();
-        let prepared = method.prepare(model, PlanOptions::default())?;
+        let prepared = chosen.prepare(model)?;
         let planned = Instant::now();
         let device = gpu.device.raw();
         let mut drawing = Drawing {

@@ -3,8 +3,11 @@
 use crate::adaptive::Adaptive;
 use crate::camera::Camera;
 use clap::{Args, ValueEnum};
-use hullform::mesh::Scheme;
-use hullform::method::{Method, method, method_for};
+use hullform::Error;
+use hullform::mesh::{Model, Scheme};
+use hullform::method::{
+    METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method, method_for,
+};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -162,6 +165,8 @@ pub struct Cut {
     /// turn by at most 5 degrees a segment, or so many)
     #[arg(long, value_name = "HOW")]
     adaptive: Option<Adaptive>,
+    #[command(flatten)]
+    tables: Tables,
 }
 
 /// How a surface is cut up, by whom, and by what depth tags go.
@@ -173,6 +178,94 @@ pub struct Cutting {
     pub backend: hullform::gpu::Backend,
     /// What depth tags go by.
     pub adaptive: Option<Adaptive>,
+}
+
+/// A method, and how it prepares.
+#[derive(Clone, Copy)]
+pub struct Chosen {
+    /// The method.
+    pub method: &'static Method,
+    /// Its options.
+    pub options: MethodOptions,
+}
+
+impl Chosen {
+    /// Prepares a model.
+    pub fn prepare(&self, model: &Model) -> hullform::Result<Prepared> {
+        self.method.prepare(model, self.options)
+    }
+}
+
+/// How tables of basis functions are made: options of whatever prepares a model for drawing.
+#[derive(Args)]
+pub struct Tables {
+    /// Level of tables of basis functions, 1 to 6: a patch has 2^N segments an edge [default: 5]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=6))]
+    table_level: Option<u32>,
+    /// Level of the refined mesh whose normals subdivision shading begins with, 0 to 2 [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=2))]
+    shading_level: Option<u32>,
+    /// Normals of the limit, by tables of tangents, instead of subdivision shading
+    #[arg(long, conflicts_with = "shading_level")]
+    geometric_normals: bool,
+}
+
+impl Tables {
+    /// What some methods prepare with.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when something is asked for that none of them uses.
+    pub fn options(&self, methods: &[&Method]) -> hullform::Result<MethodOptions> {
+        match self.asked() {
+            Some(option) if !methods.iter().any(|method| method.uses_tables) => {
+                Err(useless(option, methods))
+            }
+            _ => Ok(MethodOptions::from(self.tables())),
+        }
+    }
+
+    /// The first option that was given.
+    fn asked(&self) -> Option<&'static str> {
+        let given = [
+            ("--table-level", self.table_level.is_some()),
+            ("--shading-level", self.shading_level.is_some()),
+            ("--geometric-normals", self.geometric_normals),
+        ];
+        let mut given = given.into_iter().filter(|(_, given)| *given);
+        given.next().map(|(option, _)| option)
+    }
+
+    fn tables(&self) -> TableOptions {
+        let usual = TableOptions::default();
+        let normals = match self.shading_level {
+            _ if self.geometric_normals => TableNormals::Geometric,
+            Some(level) => TableNormals::Shading(level),
+            None => usual.normals,
+        };
+        TableOptions {
+            level: self.table_level.unwrap_or(usual.level),
+            normals,
+        }
+    }
+}
+
+/// An option of tables, and methods that have none.
+fn useless(option: &'static str, methods: &[&Method]) -> Error {
+    let names = |methods: &mut dyn Iterator<Item = &Method>| {
+        let names: Vec<&str> = methods.map(|method| method.name).collect();
+        names.join(", ")
+    };
+    Error::Option {
+        option,
+        problem: format!(
+            "no tables are used by {}",
+            names(&mut methods.iter().copied())
+        ),
+        remedy: format!(
+            "leave it out, or choose a method that has tables ({})",
+            names(&mut METHODS.iter().filter(|method| method.uses_tables))
+        ),
+    }
 }
 
 /// How finely: options of whatever tessellates.
@@ -211,13 +304,15 @@ impl From<Backend> for hullform::gpu::Backend {
 }
 
 impl Cut {
-    /// The method that is asked for, or else draws a scheme.
-    pub fn method(&self, scheme: Scheme) -> hullform::Result<&'static Method> {
-        let Some(name) = &self.method else {
-            return Ok(method_for(scheme));
+    /// The method that is asked for, or else draws a scheme, with its options.
+    pub fn chosen(&self, scheme: Scheme) -> hullform::Result<Chosen> {
+        let method = match &self.method {
+            None => method_for(scheme),
+            Some(name) => method(name)?,
         };
-        let method = method(name)?;
-        method.check(scheme).map(|()| method)
+        method.check(scheme)?;
+        let options = self.tables.options(&[method])?;
+        Ok(Chosen { method, options })
     }
 
     /// As the library takes it.

@@ -3,14 +3,14 @@
 use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::{self, Cutting, Global, Size};
+use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{Format, Pending, picture, png, wrote};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, Batch, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Method};
+use hullform::method::Displacement;
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -72,7 +72,7 @@ pub enum Shading {
 /// Everything to be drawn.
 struct Scene<'a> {
     model: &'a Model,
-    method: &'a Method,
+    chosen: Chosen,
     cutting: Cutting,
     sight: Sight,
     size: Size,
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
     let started = Instant::now();
     let mesh = model::load(arguments.model.as_deref(), &arguments.shape)?;
-    arguments.cut.method(mesh.options().scheme)?;
+    arguments.cut.chosen(mesh.options().scheme)?;
     let model = Model::new(mesh);
     let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
@@ -134,7 +134,7 @@ fn draw_picture(
     let (target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
-        method: arguments.cut.method(model.mesh().options().scheme)?,
+        chosen: arguments.cut.chosen(model.mesh().options().scheme)?,
         cutting: arguments.cut.cutting(),
         sight: Sight::Framed(arguments.sight.camera),
         size: arguments.size,
@@ -172,7 +172,7 @@ pub fn draw_lit(
     gpu: &Gpu,
     target: &OffscreenTarget,
     model: &Model,
-    method: &Method,
+    chosen: Chosen,
     cutting: Cutting,
     view: View,
     size: Size,
@@ -180,7 +180,7 @@ pub fn draw_lit(
 ) -> Result<()> {
     let scene = Scene {
         model,
-        method,
+        chosen,
         cutting,
         sight: Sight::Given(view),
         size,
@@ -228,7 +228,7 @@ fn draw_with(
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, scene.model, scene.method, options)?;
+    let mut drawing = Drawing::new(gpu, scene.model, scene.chosen, options)?;
     drawing.upload()?;
     let Size { width, height } = scene.size;
     let view = match scene.sight {
@@ -343,7 +343,7 @@ fn statistics(
     json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": scene.method.name,
+        "method": scene.chosen.method.name,
         "level": scene.cutting.cut.level,
         "backend": scene.cutting.backend.name(),
         "spacing": scene.cutting.cut.spacing.name(),

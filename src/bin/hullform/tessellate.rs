@@ -32,16 +32,17 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let format = Format::of(&arguments.output, &[Format::Csv, Format::Obj, Format::Ply])?;
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
-    let method = arguments.cut.method(model.mesh().options().scheme)?;
+    let chosen = arguments.cut.chosen(model.mesh().options().scheme)?;
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {
+        let camera = Some(arguments.sight.camera);
         capture(
             &gpu,
             &model,
-            method,
+            chosen,
             arguments.cut.cutting(),
-            Some(arguments.sight.camera),
+            camera,
             global,
         )
     })?;

@@ -11,6 +11,7 @@ use crate::conformance::{Case, Context};
 use crate::error::{Error, Result};
 use crate::gpu::Slots;
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
+use crate::method::MethodOptions;
 use crate::plan::PlanOptions;
 
 const RULE: &str = "on every edge and spoke all faces have the same vertices, and there and at every vertex the same bits of position and normal";
@@ -285,10 +286,10 @@ fn plans() -> impl Iterator<Item = Case> {
     let shallow = [1, 2, 3, 4].into_iter().flat_map(|max_level| {
         ["hull", "ngons"].map(|shape| {
             let setup = Setup {
-                plans: PlanOptions {
+                options: MethodOptions::from(PlanOptions {
                     max_level,
                     ..Default::default()
-                },
+                }),
                 ..Setup::new(&[3.0, 8.0])
             };
             let name = format!("edges.plan.{max_level}_levels-{shape}");
@@ -297,10 +298,10 @@ fn plans() -> impl Iterator<Item = Case> {
     });
     let refined = ["hull", "creased-torus"].map(|shape| {
         let setup = Setup {
-            plans: PlanOptions {
+            options: MethodOptions::from(PlanOptions {
                 direct_creases: false,
                 ..Default::default()
-            },
+            }),
             ..Setup::new(&[3.0, 8.0])
         };
         let name = format!("edges.plan.refined_creases-{shape}");

@@ -146,6 +146,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             vk::PipelineCache::null(),
             surface.prepared(),
             target,
+            surface.options().backend,
             cut.spacing,
             Fill::Solid,
         )?

@@ -1,4 +1,4 @@
-// Tess levels of a patch, a function of its edges alone on each edge. Twin of `tessellation::levels`.
+// Tess levels of a patch, a function of its edges alone on each edge. Twin of `tessellation/levels.rs`.
 #ifndef LEVELS_GLSL
 #define LEVELS_GLSL
 
@@ -10,9 +10,12 @@ struct Levels {
     float inside;
 };
 
+// The levels that the host gives the patch, or else those of a patch whose quad has the frame's level.
+//
 // Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge, so that both have a vertex in the middle and all
 // vertices line up: 2k and k with equal spacing, 4k and 2k with fractional-even (Brainerd et al. 2016, section 7.2).
-Levels patch_levels(Patch record) {
+Levels patch_levels(uint number, Patch record) {
+    if ((frame.flags & FRAME_ADAPTIVE) != 0u) return Levels(draws[number].edges, draws[number].inside);
     float level = clamp(frame.level, 1.0, 64.0);
     bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
     precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);

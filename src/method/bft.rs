@@ -6,6 +6,9 @@
 //! ring, positions and normals alike (section II-C; the normals are Alexa and Boubekeur's subdivision shading, from level 1 on). Between the points of the lattice
 //! vertices lie on a virtual mesh of the maximum level.
 //!
+//! Shading that begins earlier carries the control mesh's normals to the refined mesh. Begun later, it has tables of its own, over the vertices of
+//! the mesh refined once more; the limit's normals have tables of tangents (sections II-B and II-C name all three).
+//!
 //! So that both sides of an edge have the same bits, an edge is evaluated on the first face that has it, whoever asks, and so is a vertex.
 //! The paper computes each edge twice and counts on equal weights.
 
@@ -20,7 +23,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::abi::{self, TableFace, TablePlace};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, Surface, SurfacePoint, normalized};
@@ -71,9 +74,29 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
         options,
     );
     let [quads, triangles] = pack::passes(model, &tables);
+    check_size(&quads)?;
+    check_size(&triangles)?;
     Ok(Prepared {
         points,
         ..Prepared::of([quads, triangles])
+    })
+}
+
+/// The bytes of a buffer that every device can bind (Vulkan spec, "Required Limits", `maxStorageBufferRange`).
+const MOST_BYTES: usize = 1 << 27;
+
+/// Refuses tables of weights that a device may not be able to bind: many vertices of high valence, at a high level, make them so large.
+fn check_size(pass: &Pass) -> Result<()> {
+    let bytes = pass.tables.first().map_or(0, |weights| 4 * weights.len());
+    if bytes <= MOST_BYTES {
+        return Ok(());
+    }
+    Err(Error::Option {
+        option: "--table-level",
+        problem: format!(
+            "the tables take {bytes} bytes, and devices may bind {MOST_BYTES} at most"
+        ),
+        remedy: "give a lower level, or shading instead of geometric normals".into(),
     })
 }
 

@@ -3,16 +3,21 @@
 use std::time::Instant;
 
 use ash::vk;
+use glam::{Vec2, Vec3};
 use hullform::gpu::{
-    Batch, Counters, Cut, Fill, Layout, Pipelines, Slots, SurfaceOptions, Target,
+    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, Slots, SurfaceOptions, Target,
     TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::{Result, tessellation::Spacing};
+use hullform::method::DepthTags;
+use hullform::tessellation::{Domain, Spacing};
+use hullform::{Error, Result};
 
+use crate::adaptive::Seen;
+use crate::camera::{self, Camera};
 use crate::gpu::Gpu;
-use crate::options::Chosen;
+use crate::options::{Chosen, Cutting};
 
 /// A model on the device, and how long it took to get there.
 pub struct Drawing<'a> {
@@ -33,6 +38,15 @@ impl<'a> Drawing<'a> {
         chosen: Chosen,
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
+        if options.backend == Backend::Geometry
+            && !gpu.device.info().support.optional.geometry_shader
+        {
+            return Err(Error::Option {
+                option: "--backend",
+                problem: format!("{} has no geometry shaders", gpu.device.info().name),
+                remedy: "choose another device, or the backend pattern or tessellator".into(),
+            });
+        }
         let started = Instant::now();
         let prepared = chosen.prepare(model)?;
         let planned = Instant::now();
@@ -84,12 +98,54 @@ impl<'a> Drawing<'a> {
         self.surface.as_ref().expect("there from new to drop")
     }
 
-    /// Lets the host give slots for the batches of a cut.
-    pub fn write_slots(&mut self, cut: Cut, batches: &[Batch]) {
-        self.surface
-            .as_mut()
-            .expect("there from new to drop")
-            .write_slots(cut, batches);
+    /// What a camera sees that frames the surface itself, in a picture of some aspect: the control mesh may reach far beyond it.
+    pub fn framed(&self, model: &Model, camera: Camera, aspect: f32) -> camera::View {
+        let prepared = self.surface().prepared();
+        let controls = prepared.controls(model.positions());
+        let samples = |domain| match domain {
+            Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
+            Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.3, 0.3]],
+        };
+        let points = prepared.passes.iter().flat_map(|pass| {
+            let controls = &controls;
+            let patches = 0..pass.patches.len();
+            patches.flat_map(move |patch| {
+                samples(pass.domain)
+                    .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
+            })
+        });
+        camera.frame(&points.collect::<Vec<Vec3>>(), aspect)
+    }
+
+    /// The depth tags that a cutting asks for, as seen in a picture of `size` pixels.
+    pub fn tags(
+        &self,
+        model: &Model,
+        cutting: Cutting,
+        view: &camera::View,
+        size: [f32; 2],
+    ) -> Option<DepthTags> {
+        let seen = Seen {
+            clip_from_model: view.clip_from_model(),
+            eye: view.eye(),
+            size,
+        };
+        let outline = &self.surface().prepared().outline;
+        let level = cutting.cut.level;
+        let adaptive = cutting.adaptive?;
+        Some(adaptive.tags(outline, &model.positions(), level, seen))
+    }
+
+    /// The batches of a cut, with what the host decides about their patches written.
+    pub fn batches(&mut self, cut: Cut, tags: Option<&DepthTags>) -> Result<Vec<Batch>> {
+        let batches = self.surface().batches(cut)?;
+        let device = &self.gpu.device;
+        let surface = self.surface.as_mut().expect("there from new to drop");
+        // SAFETY: device and allocator made the surface; every submission has been waited for.
+        unsafe {
+            surface.write_draws(device.raw(), &mut device.allocator(), cut, tags, &batches)?;
+        }
+        Ok(batches)
     }
 
     /// The pipelines for a target.
@@ -112,6 +168,7 @@ impl<'a> Drawing<'a> {
                 vk::PipelineCache::null(),
                 self.surface().prepared(),
                 target,
+                self.surface().options().backend,
                 spacing,
                 fill,
             )

@@ -1,5 +1,6 @@
 //! Options that several subcommands share, and how their values are read.
 
+use crate::adaptive::Adaptive;
 use crate::camera::Camera;
 use clap::{Args, ValueEnum};
 use hullform::Error;
@@ -159,8 +160,24 @@ pub struct Cut {
     method: Option<String>,
     #[command(flatten)]
     steps: Steps,
+    /// Level by depth tags of the control vertices, up to --level: `distance[:UNITS]` (halves with the distance from the eye, beyond the
+    /// nearest vertex or so many units), `screen[:PIXELS]` (segments of at most 8 pixels, or so many), `curvature[:DEGREES]` (normals
+    /// turn by at most 5 degrees a segment, or so many)
+    #[arg(long, value_name = "HOW")]
+    adaptive: Option<Adaptive>,
     #[command(flatten)]
     tables: Tables,
+}
+
+/// How a surface is cut up, by whom, and by what depth tags go.
+#[derive(Clone, Copy, Debug)]
+pub struct Cutting {
+    /// How finely.
+    pub cut: hullform::gpu::Cut,
+    /// By whom.
+    pub backend: hullform::gpu::Backend,
+    /// What depth tags go by.
+    pub adaptive: Option<Adaptive>,
 }
 
 /// A method, and how it prepares.
@@ -260,6 +277,30 @@ pub struct Steps {
     /// Spacing of the vertices along an edge
     #[arg(long, default_value = "equal")]
     pub spacing: Spacing,
+    /// Who cuts patches into triangles; all but the tessellator raise levels to powers of two
+    #[arg(long, value_name = "WHO", default_value = "tessellator")]
+    pub backend: Backend,
+}
+
+/// Who cuts patches into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The tessellator, between control and evaluation shaders
+    Tessellator,
+    /// Refinement patterns in instances, evaluated in the vertex shader
+    Pattern,
+    /// The geometry shader, up to level 32
+    Geometry,
+}
+
+impl From<Backend> for hullform::gpu::Backend {
+    fn from(backend: Backend) -> Self {
+        match backend {
+            Backend::Tessellator => hullform::gpu::Backend::Tessellator,
+            Backend::Pattern => hullform::gpu::Backend::Pattern,
+            Backend::Geometry => hullform::gpu::Backend::Geometry,
+        }
+    }
 }
 
 impl Cut {
@@ -275,17 +316,24 @@ impl Cut {
     }
 
     /// As the library takes it.
-    pub fn cut(&self) -> hullform::gpu::Cut {
-        self.steps.cut()
+    pub fn cutting(&self) -> Cutting {
+        Cutting {
+            adaptive: self.adaptive,
+            ..self.steps.cutting()
+        }
     }
 }
 
 impl Steps {
     /// As the library takes it.
-    pub fn cut(&self) -> hullform::gpu::Cut {
-        hullform::gpu::Cut {
-            level: self.level,
-            spacing: self.spacing.into(),
+    pub fn cutting(&self) -> Cutting {
+        Cutting {
+            cut: hullform::gpu::Cut {
+                level: self.level,
+                spacing: self.spacing.into(),
+            },
+            backend: self.backend.into(),
+            adaptive: None,
         }
     }
 }

@@ -3,16 +3,14 @@
 use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::{self, Chosen, Global, Size};
+use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{Format, Pending, picture, png, wrote};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
-use glam::{Vec2, Vec3};
-use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
+use hullform::gpu::{self, Batch, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Prepared};
-use hullform::tessellation::Domain;
+use hullform::method::Displacement;
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -75,8 +73,9 @@ pub enum Shading {
 struct Scene<'a> {
     model: &'a Model,
     chosen: Chosen,
-    cut: Cut,
+    cutting: Cutting,
     sight: Sight,
+    size: Size,
     shading: Shading,
     displacement: Displacement,
     wireframe: bool,
@@ -87,8 +86,8 @@ struct Scene<'a> {
 
 /// Where a scene is seen from.
 enum Sight {
-    /// From where the camera sees all of the surface, in a picture of this aspect.
-    Framed(Camera, f32),
+    /// From where the camera sees all of the surface.
+    Framed(Camera),
     /// From a given place.
     Given(View),
 }
@@ -136,8 +135,9 @@ fn draw_picture(
     let scene = Scene {
         model,
         chosen: arguments.cut.chosen(model.mesh().options().scheme)?,
-        cut: arguments.cut.cut(),
-        sight: Sight::Framed(arguments.sight.camera, width as f32 / height as f32),
+        cutting: arguments.cut.cutting(),
+        sight: Sight::Framed(arguments.sight.camera),
+        size: arguments.size,
         shading: arguments.shading,
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
@@ -173,15 +173,17 @@ pub fn draw_lit(
     target: &OffscreenTarget,
     model: &Model,
     chosen: Chosen,
-    cut: Cut,
+    cutting: Cutting,
     view: View,
+    size: Size,
     global: &Global,
 ) -> Result<()> {
     let scene = Scene {
         model,
         chosen,
-        cut,
+        cutting,
         sight: Sight::Given(view),
+        size,
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
@@ -217,23 +219,35 @@ fn draw_with(
     scene: &Scene<'_>,
     slots: Slots,
 ) -> Result<Value> {
+    let Cutting { cut, backend, .. } = scene.cutting;
     let options = SurfaceOptions {
+        backend,
         ring_bytes: scene.ring_bytes,
         slots,
-        greatest_level: scene.cut.level,
+        greatest_level: cut.level,
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
     let mut drawing = Drawing::new(gpu, scene.model, scene.chosen, options)?;
     drawing.upload()?;
-    let batches = drawing.surface().batches(scene.cut)?;
-    drawing.write_slots(scene.cut, &batches);
+    let Size { width, height } = scene.size;
+    let view = match scene.sight {
+        Sight::Framed(camera) => drawing.framed(scene.model, camera, width as f32 / height as f32),
+        Sight::Given(view) => view,
+    };
+    let tags = drawing.tags(
+        scene.model,
+        scene.cutting,
+        &view,
+        [width as f32, height as f32],
+    );
+    let batches = drawing.batches(cut, tags.as_ref())?;
     let started = Instant::now();
-    let mut pipelines = vec![drawing.pipelines(target, scene.cut.spacing, Fill::Solid)?];
+    let mut pipelines = vec![drawing.pipelines(target, cut.spacing, Fill::Solid)?];
     if scene.wireframe {
-        pipelines.push(drawing.pipelines(target, scene.cut.spacing, Fill::Lines)?);
+        pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
     }
-    let drawn = draw_frame(gpu, target, scene, &drawing, &pipelines, &batches);
+    let drawn = draw_frame(gpu, target, scene, &view, &drawing, &pipelines, &batches);
     let seconds = started.elapsed().as_secs_f64();
     for pipelines in pipelines {
         // SAFETY: the submission has been waited for.
@@ -247,6 +261,7 @@ fn draw_frame(
     gpu: &Gpu,
     target: &OffscreenTarget,
     scene: &Scene<'_>,
+    view: &View,
     drawing: &Drawing<'_>,
     pipelines: &[Pipelines],
     batches: &[Batch],
@@ -256,7 +271,6 @@ fn draw_frame(
         .then(|| StatisticsQuery::new(&gpu.device))
         .transpose()?;
     let device = gpu.device.raw();
-    let view = scene.frame(drawing.surface().prepared());
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         drawing.surface().cmd_prepare(device, cmd);
@@ -270,8 +284,8 @@ fn draw_frame(
         drawing.cmd_draw(
             cmd,
             &pipelines[0],
-            &library_view(&view, scene),
-            scene.cut,
+            &library_view(view, scene),
+            scene.cutting.cut,
             batches,
         );
         if let Some(query) = &query {
@@ -287,9 +301,9 @@ fn draw_frame(
                 lines,
                 &gpu::View {
                     shading: abi::SHADING_LINES,
-                    ..library_view(&view, scene)
+                    ..library_view(view, scene)
                 },
-                scene.cut,
+                scene.cutting.cut,
                 &again,
             );
         }
@@ -330,8 +344,9 @@ fn statistics(
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
         "method": scene.chosen.method.name,
-        "level": scene.cut.level,
-        "spacing": scene.cut.spacing.name(),
+        "level": scene.cutting.cut.level,
+        "backend": scene.cutting.backend.name(),
+        "spacing": scene.cutting.cut.spacing.name(),
         "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },
         "plans": plans.plans,
         "draws": batches.len(),
@@ -356,36 +371,11 @@ fn statistics(
     })
 }
 
-impl Scene<'_> {
-    /// Frames the surface itself: the control mesh may reach far beyond it.
-    fn frame(&self, prepared: &Prepared) -> View {
-        let (camera, aspect) = match self.sight {
-            Sight::Framed(camera, aspect) => (camera, aspect),
-            Sight::Given(view) => return view,
-        };
-        let controls = prepared.controls(self.model.positions());
-        let samples = |domain| match domain {
-            Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
-            Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.3, 0.3]],
-        };
-        let points = prepared.passes.iter().flat_map(|pass| {
-            let controls = &controls;
-            let patches = 0..pass.patches.len();
-            patches.flat_map(move |patch| {
-                samples(pass.domain)
-                    .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
-            })
-        });
-        camera.frame(&points.collect::<Vec<Vec3>>(), aspect)
-    }
-}
-
 /// The view as the library takes it.
 fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
-    let eye = view.eye_from_model.inverse().transform_point3(Vec3::ZERO);
     gpu::View {
         clip_from_model: view.clip_from_model().to_cols_array_2d(),
-        eye: eye.to_array(),
+        eye: view.eye().to_array(),
         shading: scene.shading.code(),
         displacement: scene.displacement,
     }

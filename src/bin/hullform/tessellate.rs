@@ -23,6 +23,9 @@ pub struct Arguments {
     shape: options::Shape,
     #[command(flatten)]
     cut: options::Cut,
+    /// Where --adaptive looks from, and at what picture
+    #[command(flatten)]
+    sight: options::Sight,
 }
 
 /// Tessellates the model on the device and writes what came out.
@@ -33,7 +36,15 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {
-        capture(&gpu, &model, chosen, arguments.cut.cut(), global)
+        let camera = Some(arguments.sight.camera);
+        capture(
+            &gpu,
+            &model,
+            chosen,
+            arguments.cut.cutting(),
+            camera,
+            global,
+        )
     })?;
     gpu.finish()?;
     progress::during("writing", |_| {

@@ -151,6 +151,22 @@ fn weights_sum_to_one() {
     }
 }
 
+#[test]
+fn tables_that_no_device_has_to_bind_are_refused() {
+    let pass = |bytes: usize| {
+        let mut pass = Pass::new("bft", Domain::Triangles, 1, twin);
+        pass.tables = vec![vec![0; bytes / 4]];
+        pass
+    };
+    assert!(check_size(&pass(MOST_BYTES)).is_ok());
+    let refused = check_size(&pass(MOST_BYTES + 4)).expect_err("it is too large");
+    assert!(
+        refused
+            .to_string()
+            .starts_with("--table-level: the tables take 134217732 bytes")
+    );
+}
+
 /// The configurations that fans of up to 18 edges have, each once, with the mesh that it is in.
 fn up_to_valence_18() -> Vec<(Topology, Configuration)> {
     let mut found = std::collections::BTreeMap::new();

@@ -9,7 +9,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::Vec3;
-use hullform::gpu::Cut;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{METHODS, Method, Prepared, method};
 use hullform::subdivision::LimitSurface;
@@ -19,7 +18,7 @@ use serde_json::{Value, json};
 use crate::camera::View;
 use crate::capture::capture;
 use crate::gpu::Gpu;
-use crate::options::{self, Chosen, Global, Size};
+use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{Format, Pending, Surface, picture as composed, png, wrote};
 use crate::{model, print, progress, render};
 use errors::{Errors, Known, Reference, Twin};
@@ -90,7 +89,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let chosen = |method| Chosen { method, options };
     let asked: Vec<Chosen> = asked.into_iter().map(chosen).collect();
     let file = Pending::create(&arguments.output)?;
-    let (able, refusals) = sort_out(&model, &asked)?;
+    let (able, refusals) = sort_out(&model, &asked, arguments.steps.cutting())?;
     let mut known = Known::new(reference(&model, against.map(chosen))?);
     let gpu = Gpu::open(global)?;
     let mut columns = Vec::new();
@@ -150,10 +149,18 @@ fn renamed(error: Error, option: &'static str, also: &str) -> Error {
 }
 
 /// The methods that can draw the model, with the number of their patches, and those that refuse.
-fn sort_out(model: &Model, asked: &[Chosen]) -> Result<(Vec<Able>, Vec<Refusal>)> {
+fn sort_out(
+    model: &Model,
+    asked: &[Chosen],
+    cutting: Cutting,
+) -> Result<(Vec<Able>, Vec<Refusal>)> {
     let (mut able, mut refusals) = (Vec::new(), Vec::new());
     for &chosen in asked {
-        match progress::during("planning", |_| chosen.prepare(model)) {
+        match progress::during("planning", |_| {
+            let prepared = chosen.prepare(model)?;
+            cutting.backend.check(&prepared, cutting.cut.level)?;
+            Ok::<_, Error>(prepared)
+        }) {
             Ok(prepared) => able.push((chosen, patches(&prepared))),
             Err(error) => {
                 let name = chosen.method.name;
@@ -196,8 +203,10 @@ fn measure(
     arguments: &Arguments,
     global: &Global,
 ) -> Result<Column> {
-    let cut = arguments.steps.cut();
-    let surface = progress::during("tessellating", |_| capture(gpu, model, chosen, cut, global))?;
+    let cutting = arguments.steps.cutting();
+    let surface = progress::during("tessellating", |_| {
+        capture(gpu, model, chosen, cutting, None, global)
+    })?;
     progress::during("evaluating the reference", |bar| known.learn(&surface, bar));
     Ok(Column {
         chosen,
@@ -236,12 +245,13 @@ fn draw(
 ) -> Result<Page> {
     let Size { width, height } = arguments.size;
     let (target, factor) = render::target(gpu, width, height)?;
-    let cut: Cut = arguments.steps.cut();
+    let cutting = arguments.steps.cutting();
     let view = view(model, columns, arguments);
     let finish = || composed::compose(&target.read_pixels(), width, height, factor);
     let mut rows = Vec::new();
     for column in columns {
-        render::draw_lit(gpu, &target, model, column.chosen, cut, view, global)?;
+        let (chosen, size) = (column.chosen, arguments.size);
+        render::draw_lit(gpu, &target, model, chosen, cutting, view, size, global)?;
         let lit = finish();
         let mut tiles = vec![lit];
         let maps = [&column.errors.positions, &column.errors.normals];
@@ -282,6 +292,7 @@ fn report(
         "model": arguments.model,
         "against": arguments.against,
         "level": arguments.steps.level,
+        "backend": arguments.steps.cutting().backend.name(),
         "methods": methods,
         "refused": refused.collect::<Vec<_>>(),
     });

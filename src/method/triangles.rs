@@ -14,7 +14,7 @@ use crate::tessellation::Domain;
 
 /// Adds the patch of a triangle, whose control points are the `points`.
 pub fn add(pass: &mut Pass, model: &Model, part: Part, points: &[u32], flags: u32) {
-    let mut patch = patches::patch(model.topology(), part, 0);
+    let mut patch = patches::patch(model, part, 0);
     patch.controls = pass.controls.len() as u32;
     patch.flags |= flags;
     pass.controls.extend_from_slice(points);

@@ -68,9 +68,9 @@ pub(super) fn model_cases(name: &str) -> Vec<Case> {
 /// Shapes cut into triangles, and random meshes, for the methods that take those. Semi-sharp creases are not for the butterfly.
 fn triangles() -> impl Iterator<Item = Case> {
     let shapes = ["cube", "hull", "ngons", "sheet", "creased-torus", "pole-64"];
-    let shapes = shapes
-        .into_iter()
-        .flat_map(|shape| [Scheme::Loop, Scheme::Butterfly].map(|scheme| (shape, scheme)));
+    let shapes = shapes.into_iter().flat_map(|shape| {
+        [Scheme::Loop, Scheme::Butterfly, Scheme::LoopStam].map(|scheme| (shape, scheme))
+    });
     let known = shapes.filter(|&(shape, scheme)| {
         let mesh = builtin(shape).and_then(|mesh| under(mesh, scheme));
         mesh.is_ok()

@@ -321,11 +321,11 @@ impl TessellatedSurface {
                 self.write_records(batch, INSTANCES, &instances);
             }
         }
-        // SAFETY: this function's contract.
-        match self.options.backend {
-            Backend::Pattern => unsafe { self.patterns.write(device, allocator) },
-            Backend::Tessellator | Backend::Geometry => Ok(()),
+        if self.options.backend != Backend::Pattern {
+            return Ok(());
         }
+        // SAFETY: this function's contract.
+        unsafe { self.patterns.write(device, allocator) }
     }
 
     /// Writes a record a patch of a batch.

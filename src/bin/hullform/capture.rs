@@ -38,7 +38,7 @@ pub fn capture(
         ..Default::default()
     };
     let mut drawing = Drawing::new(gpu, model, chosen, options)?;
-    drawing.upload()?;
+    drawing.upload(global.points)?;
     // Nothing is rasterised, but draws need a render pass.
     let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
     let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;

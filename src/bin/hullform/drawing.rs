@@ -5,8 +5,8 @@ use std::time::Instant;
 use ash::vk;
 use glam::{Vec2, Vec3};
 use hullform::gpu::{
-    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, Slots, SurfaceOptions, Target,
-    TessellatedSurface, View,
+    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, Slots, SurfaceOptions,
+    Target, TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
@@ -17,7 +17,7 @@ use hullform::{Error, Result};
 use crate::adaptive::Seen;
 use crate::camera::{self, Camera};
 use crate::gpu::Gpu;
-use crate::options::{Chosen, Cutting};
+use crate::options::{Chosen, Cutting, Points};
 
 /// A model on the device, and how long it took to get there.
 pub struct Drawing<'a> {
@@ -77,15 +77,31 @@ impl<'a> Drawing<'a> {
         Ok(drawing)
     }
 
-    /// Copies everything to the device.
-    pub fn upload(&mut self) -> Result<()> {
+    /// Copies everything to the device, which computes points again if it is asked to.
+    pub fn upload(&mut self, points: Points) -> Result<()> {
         let started = Instant::now();
-        let gpu = self.gpu;
-        gpu.device.submit(|cmd| {
-            // SAFETY: recording on the device that made the surface, outside of a render pass.
-            unsafe { self.surface().cmd_upload(gpu.device.raw(), cmd) };
+        let (gpu, device) = (self.gpu, self.gpu.device.raw());
+        let on_device = (points == Points::Device).then(|| {
+            // SAFETY: the device is live, the layout its own.
+            unsafe { PointPipeline::new(device, self.layout(), vk::PipelineCache::null()) }
+        });
+        let pipeline = on_device.transpose()?;
+        let uploaded = gpu.device.submit(|cmd| {
+            let (surface, layout) = (self.surface(), self.layout());
+            // SAFETY: recording on the device that made everything, outside of a render pass; the upload makes control vertices visible.
+            unsafe {
+                surface.cmd_upload(device, cmd);
+                if let Some(pipeline) = &pipeline {
+                    surface.cmd_points(device, cmd, layout, pipeline);
+                }
+            }
             Ok(())
-        })?;
+        });
+        if let Some(pipeline) = pipeline.filter(|_| !gpu.device.is_hung()) {
+            // SAFETY: the submission has been waited for.
+            unsafe { pipeline.destroy(device) };
+        }
+        uploaded?;
         let surface = self.surface.as_mut().expect("there from new to drop");
         // SAFETY: the upload has been waited for.
         unsafe { surface.finish_upload(gpu.device.raw(), &mut gpu.device.allocator()) };

@@ -33,6 +33,9 @@ pub struct Global {
     /// Who gives patches their slots in that memory
     #[arg(long, global = true, value_name = "WHO", default_value = "counter")]
     pub slots: Slots,
+    /// Who computes the points that some methods derive from the control vertices, with the same bits
+    #[arg(long, global = true, value_name = "WHO", default_value = "host")]
+    pub points: Points,
 }
 
 impl Global {
@@ -40,6 +43,15 @@ impl Global {
     pub fn prints_json(&self) -> bool {
         self.json == Some(Json::Print)
     }
+}
+
+/// Who computes points from the control vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Points {
+    /// The host, on all cores
+    Host,
+    /// A compute shader
+    Device,
 }
 
 /// Where results go as JSON.

@@ -75,20 +75,20 @@ struct Scene<'a> {
     chosen: Chosen,
     cutting: Cutting,
     sight: Sight,
-    size: Size,
     shading: Shading,
     displacement: Displacement,
     wireframe: bool,
     ring_bytes: u64,
     slots: Slots,
+    points: options::Points,
     load_seconds: f64,
 }
 
 /// Where a scene is seen from.
 enum Sight {
-    /// From where the camera sees all of the surface.
-    Framed(Camera),
-    /// From a given place.
+    /// From where the camera sees all of the surface, in a picture of this size.
+    Framed(Camera, Size),
+    /// From a given place; depth tags are not asked for.
     Given(View),
 }
 
@@ -136,13 +136,13 @@ fn draw_picture(
         model,
         chosen: arguments.cut.chosen(model.mesh().options().scheme)?,
         cutting: arguments.cut.cutting(),
-        sight: Sight::Framed(arguments.sight.camera),
-        size: arguments.size,
+        sight: Sight::Framed(arguments.sight.camera, arguments.size),
         shading: arguments.shading,
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
+        points: global.points,
         load_seconds,
     };
     let stats = progress::during("drawing", |_| draw(gpu, &target, &scene))?;
@@ -175,7 +175,6 @@ pub fn draw_lit(
     chosen: Chosen,
     cutting: Cutting,
     view: View,
-    size: Size,
     global: &Global,
 ) -> Result<()> {
     let scene = Scene {
@@ -183,12 +182,12 @@ pub fn draw_lit(
         chosen,
         cutting,
         sight: Sight::Given(view),
-        size,
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
+        points: global.points,
         load_seconds: 0.0,
     };
     draw(gpu, target, &scene).map(drop)
@@ -229,18 +228,16 @@ fn draw_with(
         ..Default::default()
     };
     let mut drawing = Drawing::new(gpu, scene.model, scene.chosen, options)?;
-    drawing.upload()?;
-    let Size { width, height } = scene.size;
-    let view = match scene.sight {
-        Sight::Framed(camera) => drawing.framed(scene.model, camera, width as f32 / height as f32),
-        Sight::Given(view) => view,
+    drawing.upload(scene.points)?;
+    let (view, tags) = match scene.sight {
+        Sight::Framed(camera, Size { width, height }) => {
+            let size = [width as f32, height as f32];
+            let view = drawing.framed(scene.model, camera, size[0] / size[1]);
+            let tags = drawing.tags(scene.model, scene.cutting, &view, size);
+            (view, tags)
+        }
+        Sight::Given(view) => (view, None),
     };
-    let tags = drawing.tags(
-        scene.model,
-        scene.cutting,
-        &view,
-        [width as f32, height as f32],
-    );
     let batches = drawing.batches(cut, tags.as_ref())?;
     let started = Instant::now();
     let mut pipelines = vec![drawing.pipelines(target, cut.spacing, Fill::Solid)?];

@@ -250,8 +250,7 @@ fn draw(
     let finish = || composed::compose(&target.read_pixels(), width, height, factor);
     let mut rows = Vec::new();
     for column in columns {
-        let (chosen, size) = (column.chosen, arguments.size);
-        render::draw_lit(gpu, &target, model, chosen, cutting, view, size, global)?;
+        render::draw_lit(gpu, &target, model, column.chosen, cutting, view, global)?;
         let lit = finish();
         let mut tiles = vec![lit];
         let maps = [&column.errors.positions, &column.errors.normals];

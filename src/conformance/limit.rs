@@ -3,6 +3,7 @@
 //! Distances are in units: last places of a float that is as large as the model, which is the diagonal times 2^-23. A seeded fault moves a
 //! control vertex by a part in a thousand before the truth is asked.
 
+mod hexagon;
 mod lattice;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -18,10 +19,11 @@ use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
 use crate::method::{
-    Controls, METHODS, Method, Pass, Prepared, Reproduces, method, method_for, to_ptex,
+    Controls, METHODS, Method, Pass, Prepared, Reproduces, is_on_hexagon, method, method_for,
+    to_ptex,
 };
 use crate::plan::{PlanOptions, Plans, walk};
-use crate::subdivision::LimitSurface;
+use crate::subdivision::{LimitSurface, is_cusp};
 use crate::tessellation::Spacing;
 
 /// The group.
@@ -80,6 +82,7 @@ fn cases() -> Vec<Case> {
     cases.extend(levels());
     cases.extend(shapes());
     cases.extend(lattice::cases());
+    cases.extend(hexagon::cases());
     cases.extend(places());
     cases.extend((0..30).map(|number| {
         let setup = Setup::new(9.0, SPACINGS[number % 2]);
@@ -330,9 +333,10 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
 /// How far off a method may be.
 fn within(method: &Method) -> f64 {
     match method.contract.reproduces {
-        Reproduces::Limit(most) | Reproduces::LimitOnLattice(most) | Reproduces::Faces(most) => {
-            most
-        }
+        Reproduces::Limit(most)
+        | Reproduces::LimitOnLattice(most)
+        | Reproduces::LimitOnHexagon(most)
+        | Reproduces::Faces(most) => most,
         Reproduces::Itself => 1e-6,
     }
 }
@@ -345,6 +349,8 @@ enum Right {
     Twin(Controls),
     /// Positions of the surface in f64 on the pass' lattice, the method's own off it; normals are its own everywhere.
     Lattice(Box<LimitSurface>, Controls),
+    /// The surface in f64 at six places of each triangle, normals too except at cusps; the method's own elsewhere.
+    Hexagon(Box<LimitSurface>, Controls),
 }
 
 /// The truth of a method's contract: the limit, everywhere or on a lattice, or linear faces. A method with a surface of its own, and plain
@@ -356,6 +362,7 @@ fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared)
     Ok(match method.contract.reproduces {
         Reproduces::Limit(_) => Right::Truth(truth(model.mesh(), own, moved)?),
         Reproduces::LimitOnLattice(_) => Right::Lattice(truth(model.mesh(), own, moved)?, twin()),
+        Reproduces::LimitOnHexagon(_) => Right::Hexagon(truth(model.mesh(), own, moved)?, twin()),
         Reproduces::Faces(_) if own == Scheme::CatmullClark => {
             Right::Truth(truth(model.mesh(), Scheme::Bilinear, moved)?)
         }
@@ -419,6 +426,14 @@ fn kind_of(pass: &Pass, vertex: &Captured) -> Kind {
     Kind::Node(walk(plans, border.roots[0], Vec2::from(vertex.uv)).kind)
 }
 
+/// Whether (u, v) is a corner of a triangle where each face has a tangent plane of its own.
+fn is_at_cusp(truth: &LimitSurface, ptex: u32, uv: [f32; 2]) -> bool {
+    const CORNERS: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let (face, _) = truth.face_corner(ptex as usize);
+    let corner = (0..).zip(CORNERS).find(|&(_, corner)| corner == uv);
+    corner.is_some_and(|(corner, _)| is_cusp(truth.topology(), face, corner))
+}
+
 /// What captured vertices are measured with.
 struct Ruler<'a> {
     model: &'a Model,
@@ -444,6 +459,16 @@ impl Ruler<'_> {
                     true => self
                         .of_truth(truth, ptex, uv)
                         .map(|(position, _)| (position, twin.1)),
+                    false => Some(twin),
+                }
+            }
+            Right::Hexagon(truth, controls) => {
+                let twin = self.of_twin(controls, pass, vertex);
+                match is_on_hexagon(uv) {
+                    true if is_at_cusp(truth, ptex, uv) => self
+                        .of_truth(truth, ptex, uv)
+                        .map(|(position, _)| (position, twin.1)),
+                    true => self.of_truth(truth, ptex, uv),
                     false => Some(twin),
                 }
             }

@@ -24,7 +24,8 @@ use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
-use crate::method::triangles::{self, corner_weights};
+use crate::method::triangles::corner_weights;
+use crate::method::vertices;
 use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
 use crate::plan::PlanOptions;
 use crate::subdivision::{Blend, Mask, Refinement, refine_all, scheme_rings};
@@ -88,7 +89,7 @@ fn points(refined: &Topology, masks: &[Mask]) -> Points {
     }
     points.begin(abi::POINTS_RING, 0);
     for vertex in 0..refined.vertex_count() as u32 {
-        triangles::push_ring(&mut points, refined, vertex);
+        vertices::push_ring(&mut points, refined, vertex);
     }
     points
 }

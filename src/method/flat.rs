@@ -40,7 +40,7 @@ fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
             Domain::Quads => &mut quads,
             Domain::Triangles => &mut triangles,
         };
-        let mut patch = patches::patch(topology, part, 0);
+        let mut patch = patches::patch(model, part, 0);
         patch.controls = pass.controls.len() as u32;
         pass.controls.extend(controls(topology, part));
         pass.texture.push(patches::texture(model, part, 0));

@@ -3,7 +3,6 @@
 
 use crate::abi;
 use crate::mesh::Model;
-use crate::mesh::topology::Topology;
 use crate::tessellation::Domain;
 
 /// A patch to be: a face as a whole, or the part of an n-gon at a corner.
@@ -47,7 +46,8 @@ pub fn parts(model: &Model) -> Vec<Part> {
 }
 
 /// The common fields of the patch of a part whose corner 0 is the quad's corner `turn`.
-pub fn patch(topology: &Topology, part: Part, turn: u32) -> abi::Patch {
+pub fn patch(model: &Model, part: Part, turn: u32) -> abi::Patch {
+    let topology = model.topology();
     let vertices = topology.face(part.face);
     let (flags, valences) = if part.domain == Domain::Triangles {
         let valence = |corner: usize| topology.vertex_edges(vertices[corner]).len();
@@ -55,7 +55,7 @@ pub fn patch(topology: &Topology, part: Part, turn: u32) -> abi::Patch {
     } else if vertices.len() == 4 {
         let corners: [u32; 4] = std::array::from_fn(|i| (turn + i as u32) % 4);
         let edge = |corner: u32| topology.face_edges(part.face)[corner as usize];
-        let even = (0..4).filter(|&i| touches_n_gon(topology, edge(corners[i])));
+        let even = (0..4).filter(|&i| touches_n_gon(model, edge(corners[i])));
         let even: u32 = even.map(|i| abi::PATCH_EVEN_EDGE << i).sum();
         let valences = corners.map(|corner| topology.vertex_edges(vertices[corner as usize]).len());
         (even | turn << abi::PATCH_TURN_SHIFT, valences)
@@ -72,11 +72,11 @@ pub fn patch(topology: &Topology, part: Part, turn: u32) -> abi::Patch {
     }
 }
 
-fn touches_n_gon(topology: &Topology, edge: u32) -> bool {
-    topology
-        .edge_faces(edge)
-        .iter()
-        .any(|&face| topology.face(face).len() != 4 && !topology.is_hole(face))
+/// Whether a face at the edge is drawn in parts.
+fn touches_n_gon(model: &Model, edge: u32) -> bool {
+    let (topology, scheme) = (model.topology(), model.mesh().options().scheme);
+    let mut faces = topology.edge_faces(edge).iter();
+    faces.any(|&face| !scheme.is_whole(topology.face(face).len()) && !topology.is_hole(face))
 }
 
 /// The texture coordinates at the corners of a part, a triangle's last one twice, whose corner 0 is the quad's corner `turn`; without any, those of the ptex face.

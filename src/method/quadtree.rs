@@ -222,7 +222,7 @@ fn add<'a>(
     turn: u32,
     vertices: &[u32],
 ) -> &'a mut abi::Patch {
-    let mut patch = patches::patch(model.topology(), part, turn);
+    let mut patch = patches::patch(model, part, turn);
     patch.controls = pass.controls.len() as u32;
     pass.controls.extend_from_slice(vertices);
     pass.texture.push(patches::texture(model, part, turn));

@@ -7,6 +7,7 @@
 mod common;
 
 mod edges;
+mod hexagon;
 mod points;
 mod precision;
 mod ring;

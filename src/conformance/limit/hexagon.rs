@@ -2,7 +2,7 @@
 
 use crate::conformance::Case;
 use crate::conformance::limit::{Setup, case};
-use crate::conformance::meshes::{creased_sheet, open_star, sheet, star, under};
+use crate::conformance::meshes::{creased_sheet, framed_polygon, open_star, sheet, star, under};
 use crate::error::Result;
 use crate::mesh::{ControlMesh, SchemeOptions, builtin};
 use crate::method::{METHODS, Reproduces};
@@ -20,7 +20,7 @@ const MESHES: [(&str, Make); 9] = [
     ("open_star_7", || open_star(7).build()),
     ("crease", || creased(6)),
     ("dart", || creased(3)),
-    ("polygons", || builtin("ngons")),
+    ("polygons", || framed_polygon(7).build()),
 ];
 
 fn creased(edges: u32) -> Result<ControlMesh> {

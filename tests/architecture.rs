@@ -216,7 +216,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 15] = [
+const NAMED: [(&str, &str, &str); 16] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/edges/pictures.rs", "quadtree", RING),
@@ -226,6 +226,7 @@ const NAMED: [(&str, &str, &str); 15] = [
     ("tests/gpu/ring.rs", "quadtree", RING),
     ("tests/gpu/scale.rs", "quadtree", RING),
     ("tests/gpu/work.rs", "quadtree", RING),
+    ("tests/layout.rs", "quadtree", TABLES),
     ("tests/layout.rs", "bft", TABLES),
     ("tests/gpu/scale.rs", "flat", NO_RING),
     ("tests/cli_compare.rs", "quadtree", WORDS),

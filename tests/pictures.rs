@@ -172,7 +172,7 @@ fn shape(method: &Method, domain: Domain) -> (&'static str, Scheme) {
         let mesh = mesh.with_scheme(scheme);
         mesh.is_ok_and(|mesh| method.check_model(&Model::new(mesh)).is_ok())
     };
-    let mut shapes = ["hull", "pole-7", "cube"].into_iter();
+    let mut shapes = ["hull", "pole-7", "creased-torus", "cube"].into_iter();
     (
         shapes.find(draws).expect("every method draws a cube"),
         scheme,

@@ -1,4 +1,4 @@
-//! The rooms of the house: imports go only upwards, everything up to `method` is pure, and a method is a row and two files.
+//! The rooms of the house: imports go only upwards, everything up to `method` is pure, and a method is a row and its files, which alone name it.
 
 use std::path::{Path, PathBuf};
 
@@ -141,8 +141,27 @@ fn rooms_up_to_the_methods_have_neither_unsafe_code_nor_vulkan() {
     }
 }
 
+/// The files of a folder with an ending, by their names without it.
+fn stems(folder: &str, ending: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(project().join(folder)).expect("it can be listed");
+    let names = entries.map(|entry| entry.expect("an entry").file_name());
+    let names = names.map(|name| name.to_string_lossy().into_owned());
+    let mut stems: Vec<String> = names
+        .filter_map(|name| Some(name.strip_suffix(ending)?.to_owned()))
+        .collect();
+    stems.sort();
+    stems
+}
+
+/// Whether a shader, or a picture, is a method's: it has its name, or one that begins with it.
+fn belongs(name: &str, method: &str) -> bool {
+    name.strip_prefix(method)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with(['_', '-', '.']))
+}
+
 #[test]
 fn every_method_has_its_files() {
+    let pictures = stems("tests/pictures", ".png");
     for method in METHODS {
         for file in [
             format!("src/method/{}.rs", method.name),
@@ -150,5 +169,125 @@ fn every_method_has_its_files() {
         ] {
             assert!(project().join(&file).is_file(), "{file} is missing");
         }
+        for domain in method.domains {
+            let picture = format!("method-{}-{domain:?}", method.name).to_lowercase();
+            assert!(
+                pictures.contains(&picture),
+                "tests/pictures/{picture}.png is missing"
+            );
+        }
+    }
+    let of_methods = pictures
+        .iter()
+        .filter_map(|name| name.strip_prefix("method-"));
+    for name in of_methods {
+        assert!(
+            METHODS.iter().any(|method| belongs(name, method.name)),
+            "tests/pictures/method-{name}.png is nobody's"
+        );
+    }
+}
+
+/// Each says in which file of its method its twin is.
+#[test]
+fn every_shader_of_a_method_has_its_twin() {
+    let shaders = stems("glsl/method", ".glsl");
+    assert!(shaders.len() >= METHODS.len());
+    for shader in shaders {
+        let mut methods = METHODS.iter();
+        let owner = methods.find(|method| belongs(&shader, method.name));
+        let owner = owner.unwrap_or_else(|| panic!("glsl/method/{shader}.glsl is nobody's"));
+        let path = project().join(format!("glsl/method/{shader}.glsl"));
+        let text = std::fs::read_to_string(path).expect("a shader is text");
+        let (_, after) = text
+            .split_once("Twin of `method/")
+            .unwrap_or_else(|| panic!("{shader}.glsl does not name its twin"));
+        let twin = after.split('`').next().expect("a split has a first part");
+        let file = project().join("src/method").join(twin);
+        assert!(file.is_file(), "src/method/{twin} is missing");
+        let folder = format!("{}/", owner.name);
+        assert!(
+            twin == format!("{}.rs", owner.name) || twin.starts_with(&folder),
+            "the twin of {shader}.glsl is another method's"
+        );
+        let code = code(&file);
+        assert!(code.contains("SurfacePoint"), "{twin} evaluates nothing");
+    }
+}
+
+/// Where else a method is named, and why.
+const NAMED: [(&str, &str, &str); 16] = [
+    ("src/bin/hullform/plan.rs", "quadtree", PLANS),
+    ("src/conformance/determinism.rs", "quadtree", RING),
+    ("src/conformance/edges/pictures.rs", "quadtree", RING),
+    ("src/conformance/robustness.rs", "quadtree", RING),
+    ("tests/common/surfaces.rs", "quadtree", PLANS),
+    ("tests/plans.rs", "quadtree", PLANS),
+    ("tests/gpu/ring.rs", "quadtree", RING),
+    ("tests/gpu/scale.rs", "quadtree", RING),
+    ("tests/gpu/work.rs", "quadtree", RING),
+    ("tests/layout.rs", "quadtree", TABLES),
+    ("tests/layout.rs", "bft", TABLES),
+    ("tests/gpu/scale.rs", "flat", NO_RING),
+    ("tests/cli_compare.rs", "quadtree", WORDS),
+    ("tests/cli_compare.rs", "flat", WORDS),
+    ("tests/cli_models.rs", "quadtree", WORDS),
+    ("tests/cli_models.rs", "flat", WORDS),
+];
+
+const PLANS: &str = "it is about plans, which one method has";
+const RING: &str = "it is about the scratch ring, which one method uses";
+const NO_RING: &str = "it needs one that does not use the ring";
+const TABLES: &str = "it is about tables, which are a method's own";
+const WORDS: &str = "it types what users type";
+
+/// Whether code has a string that is a method's name, or the name of one of its shaders.
+fn names(code: &str, method: &str) -> bool {
+    let mut strings = code.match_indices('"').map(|(at, _)| &code[at + 1..]);
+    strings.any(|text| {
+        let end = text.find('"').unwrap_or(0);
+        belongs(&text[..end], method)
+    })
+}
+
+#[test]
+fn nothing_but_its_own_files_names_a_method() {
+    let mut files = Vec::new();
+    for folder in ["src", "tests"] {
+        collect(&project().join(folder), &mut files);
+    }
+    assert!(files.len() > 100, "the sources were found");
+    let mut named = 0;
+    for file in files {
+        let path = file.strip_prefix(project()).expect("it lies in there");
+        let path = path.to_string_lossy().replace('\\', "/");
+        let code = code(&file);
+        for method in METHODS {
+            let own = path.strip_prefix("src/method/");
+            let own = own.is_some_and(|rest| {
+                rest == format!("{}.rs", method.name)
+                    || rest.starts_with(&format!("{}/", method.name))
+            });
+            // This file has the list.
+            if own || path == "tests/architecture.rs" || !names(&code, method.name) {
+                continue;
+            }
+            let known = NAMED
+                .iter()
+                .any(|&(file, name, _)| file == path && name == method.name);
+            assert!(known, "{path} names the method {}", method.name);
+            named += 1;
+        }
+    }
+    assert_eq!(named, NAMED.len(), "a row of the list is out of date");
+}
+
+#[test]
+fn names_of_methods_and_their_shaders_are_found() {
+    for code in ["prepare(\"qas\")", "[\"a\", \"qas_quads\"]", "\"qas.tese\""] {
+        assert!(names(code, "qas"), "{code}");
+    }
+    for code in ["qas::METHOD", "\"quasar\"", "\"qasar\"", "\"a qas\""] {
+        assert!(!names(code, "qas"), "{code}");
     }
 }

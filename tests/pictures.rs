@@ -8,6 +8,10 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use hullform::mesh::{Model, Scheme, Triangulation, builtin, triangulated};
+use hullform::method::{METHODS, Method};
+use hullform::tessellation::Domain;
+
 const SIZE: &str = "160x120";
 
 /// The greatest mean of the differences, in 255ths.
@@ -147,6 +151,54 @@ fn ngons_by_valence() {
 #[test]
 fn sheet_by_normal() {
     compare("sheet-normal", &["builtin:sheet", "--shading", "normal"]);
+}
+
+/// A shape of a domain that a method draws: the first that it does not refuse, and the scheme.
+fn shape(method: &Method, domain: Domain) -> (&'static str, Scheme) {
+    let fits = |scheme: Scheme| match domain {
+        Domain::Quads => scheme.is_whole(4) && !scheme.is_whole(3),
+        Domain::Triangles => scheme.is_triangular(),
+    };
+    let schemes = method.schemes.iter().copied().find(|&scheme| fits(scheme));
+    let scheme = schemes.expect("a method does a scheme of each of its domains");
+    let draws = |name: &&str| {
+        let mesh = builtin(name).expect("it is built in");
+        let mesh = match domain {
+            Domain::Quads => mesh,
+            Domain::Triangles => {
+                triangulated(&mesh, Triangulation::default()).expect("it is sound")
+            }
+        };
+        let mesh = mesh.with_scheme(scheme);
+        mesh.is_ok_and(|mesh| method.check_model(&Model::new(mesh)).is_ok())
+    };
+    let mut shapes = ["hull", "pole-7", "creased-torus", "cube"].into_iter();
+    (
+        shapes.find(draws).expect("every method draws a cube"),
+        scheme,
+    )
+}
+
+#[test]
+fn every_method_has_a_picture_of_each_domain() {
+    for method in METHODS {
+        for &domain in method.domains {
+            let (shape, scheme) = shape(method, domain);
+            let word = format!("{domain:?}").to_lowercase();
+            compare(
+                &format!("method-{}-{word}", method.name),
+                &[
+                    &format!("builtin:{shape}"),
+                    "--scheme",
+                    scheme.name(),
+                    "--method",
+                    method.name,
+                    "--level",
+                    "8",
+                ],
+            );
+        }
+    }
 }
 
 /// Without this, that the others pass would prove nothing.

@@ -6,4 +6,7 @@
 
 layout(set = 0, binding = BINDING_POINTS, scalar) readonly buffer PointTable { Point points[]; };
 
+// The point that is a patch's control point of this number.
+Point patch_control(Patch record, uint number) { return points[controls[record.controls + number]]; }
+
 #endif

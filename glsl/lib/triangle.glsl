@@ -16,8 +16,6 @@ vec3 sum_of_three(vec3 weights, vec3 a, vec3 b, vec3 c) {
     return sum;
 }
 
-Point patch_control(Patch record, uint number) { return points[controls[record.controls + number]]; }
-
 // Whether the surface has one normal at (u, v) for all its faces.
 bool has_one_normal(Patch record, vec2 uv) {
     bvec3 on = lessThanEqual(corner_weights(uv).zxy, vec3(0.0));

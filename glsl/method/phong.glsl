@@ -22,22 +22,14 @@ vec3 patch_point(Patch record, uint number) {
 #endif
 
 #ifdef STAGE_EVALUATION
-// How far points go to where the tangent planes want them; the paper's.
-const float SHARE = 0.75;
-
-// Onto the tangent plane of corner i.
-vec3 projected(vec3 flat_point, uint i) {
-    precise vec3 offset = flat_point - in_point[i];
-    precise vec3 on_plane = flat_point - exact_dot(offset, in_point[i + 3u]) * in_point[i + 3u];
-    return on_plane;
-}
+#define NORMALS 3u
+#include "lib/phong.glsl"
 
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 weights = corner_weights(uv);
     vec3 flat_point = sum_of_three(weights, in_point[0], in_point[1], in_point[2]);
     vec3 bent = sum_of_three(weights, projected(flat_point, 0u), projected(flat_point, 1u), projected(flat_point, 2u));
-    precise vec3 position = (1.0 - SHARE) * flat_point + SHARE * bent;
-    return Point(position, direction(sum_of_three(weights, in_point[3], in_point[4], in_point[5])));
+    return Point(towards(flat_point, bent), direction(sum_of_three(weights, in_point[3], in_point[4], in_point[5])));
 }
 #endif
 

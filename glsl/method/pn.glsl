@@ -7,6 +7,7 @@
 #include "lib/cell.glsl"
 #include "lib/control_points.glsl"
 #include "lib/levels.glsl"
+#include "lib/pn_edge.glsl"
 #include "lib/surface.glsl"
 #include "lib/triangle.glsl"
 
@@ -19,26 +20,7 @@ const uint MIDDLE = 9u;
 const uint NORMALS = 10u;
 const uint BETWEEN = 13u;
 
-const float THIRD = 1.0 / 3.0;
-
 #ifdef STAGE_CONTROL
-// The control point of the cubic patch on the edge from corner a to corner b, next to a (section 3.1).
-vec3 edge_point(Point a, Point b) {
-    precise vec3 along = b.position - a.position;
-    precise vec3 point = THIRD * ((2.0 * a.position + b.position) - exact_dot(along, a.normal) * a.normal);
-    return point;
-}
-
-// The control point of the quadratic patch between two corners (section 3.3): the mean normal, mirrored at the plane across the edge.
-vec3 edge_normal(Point a, Point b) {
-    precise vec3 along = b.position - a.position;
-    precise vec3 sum = a.normal + b.normal;
-    float square = exact_dot(along, along);
-    precise float share = square > 0.0 ? 2.0 * exact_dot(along, sum) / square : 0.0;
-    precise vec3 mirrored = sum - share * along;
-    return normalize_or_zero(mirrored);
-}
-
 // E + (E - V) / 2 of the mean of the points on the edges and that of the corners.
 vec3 middle_point(Point a, Point b, Point c) {
     precise vec3 edges =

@@ -1,5 +1,5 @@
 // Regular faces of the quadtree method: plain bicubic B-splines of sixteen control points (Brainerd et al. 2016, section 7.1).
-// Twin of `method/quadtree.rs`.
+// Twin of `method/quadtree/twin.rs`.
 #ifndef QUADTREE_REGULAR_GLSL
 #define QUADTREE_REGULAR_GLSL
 

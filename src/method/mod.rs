@@ -1,7 +1,48 @@
 //! Surface methods: how each prepares a model for the GPU, and how its evaluation reads as a CPU twin.
 //!
-//! A method is one file here, one in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the rows;
-//! nothing else names a method.
+//! A method is one file here, one or more in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the
+//! rows; nothing else names a method.
+//!
+//! # Adding a method
+//!
+//! A method `name` is `src/method/name.rs` with what it needs in `src/method/name/`, `glsl/method/name.glsl`, one more
+//! `glsl/method/name_something.glsl` for each further set of shaders, and a row. The build compiles every file of `glsl/method`.
+//!
+//! **The row** is a [`Method`] in [`METHODS`]. Its place counts: the first that does a scheme draws it when nobody names a method. [`Contract`]
+//! says which surface it draws and how near; tests hold it to that. `covers` refuses meshes that the method cannot draw, by a face, edge or
+//! vertex; refuse rather than draw another surface. `prepare` returns [`Prepared`]: a [`Pass`] for each set of shaders, without those that have no
+//! patches. A pass has one [`Domain`] and names its shader. Faces come from `patches::parts`, with their flags and texture coordinates.
+//!
+//! **Points.** What can be computed once a frame from the control vertices, and not once a patch, goes into [`Prepared::points`]: refined vertices
+//! and other weighted sums, limits with their normals, normals of rings of faces, means of normals. The device and the host compute them with
+//! the same bits. A patch then names points instead of vertices (`vertices.rs`).
+//!
+//! **The shader.** `glsl/surface.vert`, `.tesc`, `.tese` and `.frag` include it in the place of `#include "method"`. It defines `TRIANGLES`
+//! if its domain is that, includes `lib/levels.glsl`, and gives:
+//!
+//! | what | in stage | is |
+//! | --- | --- | --- |
+//! | `const uint CONTROL_POINTS` | all | [`Pass::control_points`] |
+//! | `#define CONTROL_VERTICES` | all | invocations of the control shader a patch, 32 at most |
+//! | `vec3 control_point(Patch, uint number)` | vertex | what a vertex hands on: a control vertex, or nothing when the control shader fetches points |
+//! | `vec3 patch_point(Patch, uint number)` | control | what invocation `number` hands on |
+//! | `Point evaluate_patch(Patch, uint slot, vec2 uv)` | evaluation | position and normal; `in_point[]` holds what was handed on (`lib/control_points.glsl`) |
+//! | `bool has_one_normal(Patch, vec2 uv)` | evaluation | whether all faces there have the same normal, so that a displacement opens nothing |
+//! | `Cell cell_at(Patch, vec2 uv)` | fragment | which piece of the patch a point belongs to, for pictures that show it |
+//!
+//! A shader that defines `SCRATCH_RING` gives `scratch_points` and `run_stencils` instead of `patch_point` (`lib/scratch.glsl`). Whatever flows into
+//! a position or normal is `precise`.
+//!
+//! **Edges.** A method that promises to be watertight evaluates an edge from what belongs to that edge alone, in an order that reads the same from
+//! both ends: as sums in which all other terms are zero (`sum_of_three`, `sum_of_four`), or on one of the faces for all (`bft`).
+//!
+//! **The twin** is a [`Twin`]: the same operations in f32, from the bytes that the GPU gets. Write it first. The first lines of the shader say where
+//! it is.
+//!
+//! **What holds it**, without a line of its own: the device against the twin, the counts of vertices, points from the device against those of the
+//! host (`tests/gpu`), the contract and the bits on shared edges (`hullform verify`), `NoContraction` and layouts read off the SPIR-V, the files
+//! (`tests/architecture.rs`). What its paper claims needs tests of its own, in `src/method/name/tests.rs`. Then make its modules with
+//! `scripts/update-spirv`, its pictures as `tests/pictures.rs` says, and its lines in the README.
 
 mod bft;
 mod displacement;
@@ -13,10 +54,12 @@ mod phong;
 mod pn;
 mod points;
 mod qas;
+mod quads;
 mod quadtree;
 mod surface;
 mod tags;
 mod triangles;
+mod vertices;
 
 use glam::Vec2;
 
@@ -41,6 +84,9 @@ pub enum Reproduces {
     /// The limit of the scheme, to within this, at the corners of a grid of 2^([`Pass::max_level`] - 1) segments a patch's edge, and
     /// linear between them: see [`Pass::is_on_lattice`].
     LimitOnLattice(f64),
+    /// The limit of the scheme, to within this and with its normals, at the corners and the middles of the edges of each triangle, see
+    /// [`is_on_hexagon`]; between them it only looks like the limit.
+    LimitOnHexagon(f64),
     /// The faces of the control mesh, to within this.
     Faces(f64),
     /// A surface of its own that looks like the limit.
@@ -141,9 +187,9 @@ fn every_mesh(_: &Model) -> Result<()> {
 pub const METHODS: &[Method] = &[
     quadtree::METHOD,
     qas::METHOD,
+    bft::METHOD,
     pn::METHOD,
     phong::METHOD,
-    bft::METHOD,
     flat::METHOD,
 ];
 
@@ -286,6 +332,11 @@ impl Pass {
             .get(plan)
             .map_or(0, |points| points[level as usize])
     }
+}
+
+/// Whether a point of a triangle is a corner or the middle of an edge; see [`Reproduces::LimitOnHexagon`].
+pub fn is_on_hexagon(uv: [f32; 2]) -> bool {
+    uv.iter().all(|x| (2.0 * x).fract() == 0.0)
 }
 
 /// Where (u, v) of a patch's own domain lies in its ptex face: the patch may be one of its children, and its domain may be turned.

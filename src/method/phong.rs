@@ -1,22 +1,31 @@
-//! `phong`: Phong tessellation (Boubekeur, Alexa 2008). Each point of a triangle is projected onto the tangent planes of the three vertices,
-//! and moved towards the mean of the three by a share of 3/4. It needs vertex normals and nothing else.
+//! `phong`: Phong tessellation (Boubekeur, Alexa 2008). Each point of a triangle or quad is projected onto the tangent planes of the vertices,
+//! and moved towards the mean of these projections by a share of 3/4. It needs vertex normals and nothing else.
+//!
+//! Of a quad points and mean are bilinear. On an edge that is the same as of a triangle, so both may meet.
 
 use glam::{Vec2, Vec3};
 
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
+use crate::method::quads::{quad_weights, sum_of_four};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
-use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
-use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::method::triangles::{corner_weights, sum_of_three};
+use crate::method::vertices::{self, control_points};
+use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
 
 /// The row of the table.
 pub const METHOD: Method = Method {
     name: "phong",
-    summary: "Phong tessellation: triangles bent towards the tangent planes of their vertices",
+    summary: "Phong tessellation: triangles and quads bent towards the tangent planes of their vertices",
     paper: "Boubekeur, Alexa 2008",
-    schemes: &[Scheme::Loop, Scheme::Butterfly],
-    domains: &[Domain::Triangles],
+    schemes: &[
+        Scheme::Loop,
+        Scheme::Butterfly,
+        Scheme::CatmullClark,
+        Scheme::LoopStam,
+    ],
+    domains: &[Domain::Quads, Domain::Triangles],
     contract: Contract {
         reproduces: Reproduces::Itself,
         normals: None,
@@ -24,26 +33,46 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
-    covers: method::every_mesh,
+    covers: vertices::whole_faces,
     prepare,
 };
 
 fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
-    Ok(triangles::by_vertices(model, "phong", twin))
+    let quads = Pass::new("phong_quads", Domain::Quads, 1, quad);
+    let triangles = Pass::new("phong", Domain::Triangles, 1, triangle);
+    Ok(vertices::by_vertices(model, [quads, triangles]))
 }
 
 /// How far points go to where the tangent planes want them; the paper's.
 const SHARE: f32 = 0.75;
 
-fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    let (corners, normals): ([Vec3; 3], [Vec3; 3]) = control_points(pass, given, patch);
+fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let weights = corner_weights(uv);
-    let flat = sum_of_three(weights, corners);
+    bent(control_points(pass, given, patch), |points| {
+        sum_of_three(weights, points)
+    })
+}
+
+fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let weights = quad_weights(uv);
+    bent(control_points(pass, given, patch), |points| {
+        sum_of_four(weights, points)
+    })
+}
+
+/// The point of a face with these corners and normals whose weighted mean is `mean`.
+fn bent<const N: usize>(
+    (corners, normals): ([Vec3; N], [Vec3; N]),
+    mean: impl Fn([Vec3; N]) -> Vec3,
+) -> SurfacePoint {
+    let flat = mean(corners);
     let projected =
         std::array::from_fn(|i| flat - (flat - corners[i]).dot(normals[i]) * normals[i]);
-    let bent = sum_of_three(weights, projected);
     SurfacePoint {
-        position: (1.0 - SHARE) * flat + SHARE * bent,
-        normal: normalized(sum_of_three(weights, normals)) + Vec3::ZERO,
+        position: (1.0 - SHARE) * flat + SHARE * mean(projected),
+        normal: normalized(mean(normals)) + Vec3::ZERO,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -168,7 +168,7 @@ fn term(source: u32, position: f64, du: f64, dv: f64) -> PointTerm {
     }
 }
 
-/// The terms of three masks, each vertex once.
+/// The terms of three masks, each vertex once, and the greatest weight of the position last: so a sum of hundreds keeps its last places.
 fn joined(masks: [&Mask; 3]) -> Vec<PointTerm> {
     let mut vertices: Vec<u32> = masks
         .iter()
@@ -182,10 +182,12 @@ fn joined(masks: [&Mask; 3]) -> Vec<PointTerm> {
             .map(|&(_, w)| w)
             .sum()
     };
-    let [position, du, dv] = masks;
-    vertices
+    let weights = |vertex: u32| (vertex, masks.map(|mask| weight(mask, vertex)));
+    let mut terms: Vec<(u32, [f64; 3])> = vertices.into_iter().map(weights).collect();
+    terms.sort_by(|(_, [a, ..]), (_, [b, ..])| a.abs().total_cmp(&b.abs()));
+    terms
         .into_iter()
-        .map(|v| term(v, weight(position, v), weight(du, v), weight(dv, v)))
+        .map(|(v, [position, du, dv])| term(v, position, du, dv))
         .collect()
 }
 

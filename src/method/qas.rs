@@ -13,7 +13,8 @@ use crate::abi;
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
-use crate::method::triangles::{self, control_points, corner_weights, sum_of_three};
+use crate::method::triangles::{corner_weights, sum_of_three};
+use crate::method::vertices::{self, control_points};
 use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces, patches};
 use crate::tessellation::Domain;
 
@@ -27,7 +28,7 @@ pub const METHOD: Method = Method {
     schemes: &[Scheme::Loop, Scheme::Butterfly],
     domains: &[Domain::Triangles],
     contract: Contract {
-        reproduces: Reproduces::Itself,
+        reproduces: Reproduces::LimitOnHexagon(1e-6),
         normals: None,
         interpolates: false,
         watertight: true,
@@ -42,7 +43,7 @@ fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
     let mut pass = Pass::new("qas", Domain::Triangles, 1, twin);
     for part in patches::parts(model) {
         let (points, flags) = hexagons.of(part.face);
-        triangles::add(&mut pass, model, part, &points, flags);
+        vertices::add(&mut pass, model, part, &points, flags);
     }
     Ok(Prepared {
         points: hexagons.points,

@@ -8,6 +8,7 @@ mod common;
 
 mod backends;
 mod edges;
+mod hexagon;
 mod points;
 mod precision;
 mod ring;

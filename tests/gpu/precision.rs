@@ -56,8 +56,8 @@ pub fn from_truth(
     let scheme = match method.contract.reproduces {
         Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => own,
         Reproduces::Faces(_) if own == Scheme::CatmullClark => Scheme::Bilinear,
-        // No truth in f64: the twin will do.
-        Reproduces::Faces(_) | Reproduces::Itself => {
+        // No truth in f64, or in few places, which have a test of their own: the twin will do.
+        Reproduces::LimitOnHexagon(_) | Reproduces::Faces(_) | Reproduces::Itself => {
             return from_twin(model, prepared, frame, step);
         }
     };

@@ -183,9 +183,10 @@ fn captured_vertices_keep_the_contract() {
 
 fn limit(method: &Method) -> f64 {
     match method.contract.reproduces {
-        Reproduces::Limit(most) | Reproduces::LimitOnLattice(most) | Reproduces::Faces(most) => {
-            most
-        }
+        Reproduces::Limit(most)
+        | Reproduces::LimitOnLattice(most)
+        | Reproduces::LimitOnHexagon(most)
+        | Reproduces::Faces(most) => most,
         Reproduces::Itself => 1e-6,
     }
 }

@@ -36,6 +36,7 @@ pub(super) fn cases() -> Vec<Case> {
     cases.extend(levels());
     cases.extend(shapes());
     cases.extend(triangles());
+    cases.extend(mixed());
     cases.extend(ways_of_drawing());
     cases.extend(plans());
     cases.extend(tables());
@@ -97,6 +98,30 @@ fn triangles() -> impl Iterator<Item = Case> {
         )
     });
     shapes.chain(random)
+}
+
+/// Whole triangles beside whole quads.
+fn mixed() -> impl Iterator<Item = Case> {
+    let poles = [3, 5, 7, 16].map(|n| (format!("pole-{n}"), Source::Pole(n)));
+    let frame = [("framed_triangle".to_owned(), Source::Triangle)];
+    poles.into_iter().chain(frame).map(|(name, source)| {
+        let setup = Setup::new(&[1.0, 2.0, 3.0, 5.0, 8.0, 16.0]);
+        let name = format!("edges.mixed.{name}");
+        case(name, setup, move |_| {
+            let mesh = match source {
+                Source::Pole(n) => builtin(&format!("pole-{n}"))?,
+                Source::Triangle => framed_polygon(3).build()?,
+            };
+            under(mesh, Scheme::LoopStam)
+        })
+    })
+}
+
+/// Where a mesh of triangles and quads comes from.
+#[derive(Clone, Copy)]
+enum Source {
+    Pole(u32),
+    Triangle,
 }
 
 type Make = fn() -> Result<ControlMesh>;

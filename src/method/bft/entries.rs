@@ -6,7 +6,7 @@ use crate::abi;
 use crate::mesh::topology::Topology;
 use crate::method::TableNormals;
 use crate::method::points::{Points, Row};
-use crate::method::triangles::push_ring;
+use crate::method::vertices::push_ring;
 use crate::subdivision::{Blend, Mask, Refinement};
 
 /// The points of a control mesh refined once, and `twice` where shading begins there.

@@ -216,7 +216,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 16] = [
+const NAMED: [(&str, &str, &str); 17] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/edges/pictures.rs", "quadtree", RING),
@@ -231,6 +231,7 @@ const NAMED: [(&str, &str, &str); 16] = [
     ("tests/gpu/scale.rs", "flat", NO_RING),
     ("tests/cli_compare.rs", "quadtree", WORDS),
     ("tests/cli_compare.rs", "flat", WORDS),
+    ("tests/cli_compare.rs", "bft", WORDS),
     ("tests/cli_models.rs", "quadtree", WORDS),
     ("tests/cli_models.rs", "flat", WORDS),
 ];

@@ -42,7 +42,7 @@ uvec2 snapped(Levels levels, uint n, uvec2 at) {
 }
 
 void emit(Patch record, Levels levels, uint n, uvec2 at) {
-    vec2 uv = vec2(snapped(levels, n, at)) / float(n);
+    vec2 uv = lattice_uv(snapped(levels, n, at), n);
     write_vertex(record, in_patch[0], uv, evaluate_patch(record, 0u, uv));
     EmitVertex();
 }

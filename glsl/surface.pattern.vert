@@ -14,7 +14,6 @@ void main() {
     fit_patch(record);
     uint index = uint(gl_VertexIndex);
     uvec2 place = uvec2(index & ((1u << PATTERN_SHIFT) - 1u), index >> PATTERN_SHIFT);
-    // Exact: segments are a power of two.
-    vec2 uv = vec2(place) / float(frame.segments);
+    vec2 uv = lattice_uv(place, frame.segments);
     write_vertex(record, number, uv, evaluate_patch(record, 0u, uv));
 }

@@ -194,7 +194,7 @@ fn watertight(stage: &str) -> Vec<(&'static str, &'static [u8])> {
     modules
 }
 
-/// Position, normal, and where in the patch, as `glsl/surface.tese` has them. Clip coordinates and texture coordinates are left out: clip
+/// Position, normal, and where in the patch, as `glsl/lib/vertex.glsl` has them. Clip coordinates and texture coordinates are left out: clip
 /// coordinates come of the same instructions for all faces, and nobody compares texture coordinates across edges.
 const EVALUATED: [Output; 4] = [
     Output::Location(0),
@@ -211,7 +211,8 @@ const LEVELS: [Output; 2] = [Output::BuiltIn(11), Output::BuiltIn(12)];
 #[test]
 fn nothing_that_flows_into_positions_normals_and_levels_may_be_contracted() {
     let mut total = 0;
-    for (name, bytes) in watertight(".tese") {
+    let evaluating = [".tese", ".pattern.vert", ".geom"].map(watertight);
+    for (name, bytes) in evaluating.concat() {
         let (count, free) = Flow::of(bytes).contractible(&EVALUATED);
         assert!(
             free.is_empty(),

@@ -36,9 +36,10 @@ uint required_level(Levels levels) {
     return level;
 }
 
-// Vertex i of n on an edge, in steps of 2^-16; the steps from the other end are the same.
+// Vertex i of n on an edge, in steps of 2^-16; the steps from the other end are the same. Products with powers of two are exact, quotients
+// need not be (Vulkan spec, "Precision of Individual Operations").
 float step_of(uint i, uint n) {
-    precise float t = float((i * 65536u + n / 2u) / n) / 65536.0;
+    precise float t = float((i * 65536u + n / 2u) / n) * (1.0 / 65536.0);
     return t;
 }
 
@@ -51,7 +52,7 @@ vec2 shared_coordinates(Patch record, Levels levels, vec3 barycentric) {
     if (min(barycentric.x, min(uv.x, uv.y)) > 0.0) return uv;
     uint edge = uv.y <= 0.0 ? 0u : barycentric.x <= 0.0 ? 1u : 2u;
     precise float along = edge == 0u ? uv.x : uv.y;
-    precise float t = roundEven(along * 65536.0) / 65536.0;
+    precise float t = roundEven(along * 65536.0) * (1.0 / 65536.0);
     if ((record.flags & PATCH_REFINED) != 0u) {
         uint segments = uint(levels.edges[edge]);
         precise float steps = along * float(segments) + 0.5;

@@ -17,6 +17,14 @@ vec3 in_point[CONTROL_INVOCATIONS];
 
 #include "method"
 
+// Where a point of a patch's lattice is, which has `segments` on an edge: a power of two, whose reciprocal is made of its bits, since a
+// quotient need not be exact (Vulkan spec, "Precision of Individual Operations").
+vec2 lattice_uv(uvec2 place, uint segments) {
+    float reciprocal = uintBitsToFloat(uint(127 - bitCount(segments - 1u)) << 23u);
+    precise vec2 uv = vec2(place) * reciprocal;
+    return uv;
+}
+
 // Makes a patch ready for `evaluate_patch`.
 void fit_patch(Patch record) {
     for (uint i = 0u; i < CONTROL_POINTS; ++i) in_point[i] = control_point(record, i);

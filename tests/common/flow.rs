@@ -20,8 +20,8 @@ const LABEL: u32 = 248;
 const BRANCH_CONDITIONAL: u32 = 250;
 const SWITCH: u32 = 251;
 /// Instructions of functions that have no result.
-const WITHOUT_RESULT: [u32; 14] = [
-    0, 8, 56, 224, 225, 228, 246, 247, 249, 252, 253, 254, 255, 317,
+const WITHOUT_RESULT: [u32; 16] = [
+    0, 8, 56, 218, 219, 224, 225, 228, 246, 247, 249, 252, 253, 254, 255, 317,
 ];
 
 /// Additions, multiplications and divisions of floats, and what is made of them: OpFAdd, FSub, FMul, FDiv, FRem, FMod, all products of

@@ -6,10 +6,10 @@ use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
-use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
+use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{Displacement, to_ptex};
+use hullform::method::to_ptex;
 use hullform::{Error, Result, abi};
 
 /// Vertices that are captured at once: as many as 64 MiB hold.
@@ -67,12 +67,7 @@ fn capture_batch(
     cut: Cut,
     batch: &Batch,
 ) -> Result<Vec<abi::Captured>> {
-    let view = View {
-        clip_from_model: [[0.0; 4]; 4],
-        eye: [0.0; 3],
-        shading: abi::SHADING_LIT,
-        displacement: Displacement::default(),
-    };
+    let view = Drawing::nowhere();
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         drawing.surface().cmd_prepare(gpu.device.raw(), cmd);

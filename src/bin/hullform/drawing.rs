@@ -10,9 +10,9 @@ use hullform::gpu::{
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::DepthTags;
+use hullform::method::{DepthTags, Displacement};
 use hullform::tessellation::{Domain, Spacing};
-use hullform::{Error, Result};
+use hullform::{Error, Result, abi};
 
 use crate::adaptive::Seen;
 use crate::camera::{self, Camera};
@@ -188,6 +188,16 @@ impl<'a> Drawing<'a> {
                 spacing,
                 fill,
             )
+        }
+    }
+
+    /// A view for draws of which nothing is seen.
+    pub fn nowhere() -> View {
+        View {
+            clip_from_model: [[0.0; 4]; 4],
+            eye: [0.0; 3],
+            shading: abi::SHADING_LIT,
+            displacement: Displacement::default(),
         }
     }
 

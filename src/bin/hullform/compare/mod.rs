@@ -1,5 +1,6 @@
 //! `hullform compare`: methods side by side, with maps of their errors.
 
+mod costs;
 mod errors;
 mod page;
 mod picture;
@@ -55,6 +56,9 @@ pub struct Arguments {
     /// Size in pixels of each of the three pictures of a method
     #[arg(long, value_name = "WxH", default_value = "480x360")]
     size: Size,
+    /// Draw so many frames of each method, and tell the least time
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    costs: Option<u32>,
     #[command(flatten)]
     sight: options::Sight,
 }
@@ -65,6 +69,8 @@ struct Column {
     patches: usize,
     surface: Surface,
     errors: Errors,
+    /// The least seconds of a frame, where they are asked for.
+    seconds: Option<f64>,
 }
 
 /// A method that can draw the model, and the number of its patches.
@@ -97,6 +103,16 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         columns.push(measure(
             &gpu, &model, chosen, patches, &mut known, arguments, global,
         )?);
+    }
+    if let Some(frames) = arguments.costs {
+        let all: Vec<Chosen> = columns.iter().map(|column| column.chosen).collect();
+        let cutting = arguments.steps.cutting();
+        let seconds = progress::during("drawing frames", |_| {
+            costs::seconds(&gpu, &model, &all, cutting, frames, global)
+        })?;
+        for (column, seconds) in columns.iter_mut().zip(seconds) {
+            column.seconds = Some(seconds);
+        }
     }
     let scales = scales(&columns);
     let page = progress::during("drawing", |_| {
@@ -213,6 +229,7 @@ fn measure(
         patches,
         errors: Errors::new(&surface, known, diagonal(model)),
         surface,
+        seconds: None,
     })
 }
 
@@ -306,14 +323,19 @@ fn facts(column: &Column) -> Value {
         "vertices": column.surface.points.len(),
         "position_error": column.errors.position.json(),
         "normal_error_degrees": column.errors.normal.json(),
+        "seconds_per_frame": column.seconds,
     })
 }
 
 /// A line a method.
 fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> String {
+    let frame = match arguments.costs {
+        None => ["", ""],
+        Some(_) => ["            frame", "        ms"],
+    };
     let mut lines = vec![format!(
-        "{:16} {:>10}   position error / diagonal        normal error, degrees\n{:16} {:>10}   maximum    mean       RMS        maximum    mean       RMS",
-        "", "", "method", "triangles"
+        "{:16} {:>10}   position error / diagonal        normal error, degrees{}\n{:16} {:>10}   maximum    mean       RMS        maximum    mean       RMS{}",
+        "", "", frame[0], "method", "triangles", frame[1]
     )];
     lines.extend(columns.iter().map(|column| {
         let numbers = [column.errors.position, column.errors.normal]
@@ -322,10 +344,14 @@ fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> S
             .map(|number| format!("{number:<9.2e}"))
             .collect::<Vec<_>>();
         let triangles = column.surface.triangles.len();
+        let time = column
+            .seconds
+            .map(|seconds| format!("  {:.1}", 1e3 * seconds));
         let line = format!(
-            "{:16} {triangles:>10}   {}",
+            "{:16} {triangles:>10}   {}{}",
             column.chosen.method.name,
-            numbers.join("  ")
+            numbers.join("  "),
+            time.unwrap_or_default()
         );
         line.trim_end().to_string()
     }));

@@ -1,8 +1,9 @@
 //! Turns `glsl/` into the SPIR-V modules that the crate embeds, and lists them in `shaders.rs` for `src/gpu/shaders.rs`.
 //!
-//! Every `glsl/method/NAME.glsl` makes five modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
-//! `NAME.fractional-even.tese` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of their line
-//! `#include "method"`. Spacing is an execution mode, hence a module of its own. Every other stage file in `glsl/` is a
+//! Every `glsl/method/NAME.glsl` makes seven modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
+//! `NAME.fractional-even.tese`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of
+//! their line `#include "method"`. Spacing is an execution mode, hence a module of its own. Methods that define `SCRATCH_RING` need control
+//! shaders, and have neither of the modules that do without. Every other stage file in `glsl/` is a
 //! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`.
 //!
 //! With the feature `shaderc` the modules are compiled here. Without it they are the files in `glsl/spirv`, which
@@ -20,7 +21,7 @@ type Result<T> = std::result::Result<T, String>;
 const OPTIONS: &str = "vulkan1.2 spirv1.5 performance";
 
 /// The shells, by the ending of the module's name and of the file, and the value of the macro `SPACING`.
-const SHELLS: [(&str, &str, Option<&str>); 5] = [
+const SHELLS: [(&str, &str, Option<&str>); 7] = [
     ("vert", "vert", None),
     ("tesc", "tesc", None),
     ("equal.tese", "tese", Some("equal_spacing")),
@@ -29,14 +30,20 @@ const SHELLS: [(&str, &str, Option<&str>); 5] = [
         "tese",
         Some("fractional_even_spacing"),
     ),
+    ("pattern.vert", "pattern.vert", None),
+    ("geom", "geom", None),
     ("frag", "frag", None),
 ];
 
+/// The shells that evaluate patches without a control shader.
+const WITHOUT_CONTROL: [&str; 2] = ["pattern.vert", "geom"];
+
 /// File extension and the macro that says so to the shader.
-const STAGES: [(&str, &str); 5] = [
+const STAGES: [(&str, &str); 6] = [
     ("vert", "STAGE_VERTEX"),
     ("tesc", "STAGE_CONTROL"),
     ("tese", "STAGE_EVALUATION"),
+    ("geom", "STAGE_GEOMETRY"),
     ("frag", "STAGE_FRAGMENT"),
     ("comp", "STAGE_COMPUTE"),
 ];
@@ -97,7 +104,12 @@ impl Sources {
             .collect();
         let mut modules = Vec::new();
         for method in &methods {
-            for (ending, extension, spacing) in SHELLS {
+            let has_ring =
+                self.0[&format!("method/{method}.glsl")].contains("#define SCRATCH_RING");
+            let shells = SHELLS
+                .iter()
+                .filter(|(ending, _, _)| !(has_ring && WITHOUT_CONTROL.contains(ending)));
+            for &(ending, extension, spacing) in shells {
                 let file = format!("surface.{extension}");
                 if !self.0.contains_key(&file) {
                     return Err(format!(
@@ -335,6 +347,7 @@ fn compile(
         "STAGE_VERTEX" => ShaderKind::Vertex,
         "STAGE_CONTROL" => ShaderKind::TessControl,
         "STAGE_EVALUATION" => ShaderKind::TessEvaluation,
+        "STAGE_GEOMETRY" => ShaderKind::Geometry,
         "STAGE_FRAGMENT" => ShaderKind::Fragment,
         _ => ShaderKind::Compute,
     };

@@ -25,8 +25,7 @@ use hullform::gpu::{
     TessellatedSurface, View, ring, workarounds,
 };
 use hullform::mesh::{DEFAULT_BUILTIN, Model, builtin, read_obj};
-use hullform::method::{Displacement, method};
-use hullform::plan::PlanOptions;
+use hullform::method::{Displacement, MethodOptions, method};
 use hullform::{abi, tessellation::Spacing};
 
 const WIDTH: u32 = 960;
@@ -42,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => builtin(DEFAULT_BUILTIN)?,
     };
     let model = Model::new(mesh);
-    let prepared = method("quadtree")?.prepare(&model, PlanOptions::default())?;
+    let prepared = method("quadtree")?.prepare(&model, MethodOptions::default())?;
 
     // 2. The device. `Support` tells whether a physical device will do and why not; `FeatureChain` switches on what is needed. An engine with
     //    feature structs of its own calls `Support::require` on them instead. Workarounds for driver faults are a list that is handed over
@@ -146,6 +145,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             vk::PipelineCache::null(),
             surface.prepared(),
             target,
+            surface.options().backend,
             cut.spacing,
             Fill::Solid,
         )?

@@ -14,8 +14,8 @@ const uint BINDING_TEXTURE = 3u;
 const uint BINDING_SCRATCH = 4u;
 // Set 0, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
 const uint BINDING_COUNTERS = 5u;
-// Set 0, binding: where each patch's slot begins, when the host allocates.
-const uint BINDING_SLOTS = 6u;
+// Set 0, binding: `PatchDraw` records, what the host decides about each patch.
+const uint BINDING_DRAWS = 6u;
 // Set 0, binding: the number of captured vertices, then the `Captured` records.
 const uint BINDING_CAPTURE = 7u;
 // Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
@@ -24,8 +24,10 @@ const uint BINDING_POINTS = 8u;
 const uint BINDING_POINT_ROWS = 9u;
 // Set 0, binding: `PointTerm` records.
 const uint BINDING_POINT_TERMS = 10u;
+// Set 0, binding: the patch of each instance, where patterns are drawn.
+const uint BINDING_INSTANCES = 11u;
 // Set 0, binding: the first of a method's own tables.
-const uint BINDING_TABLES = 11u;
+const uint BINDING_TABLES = 12u;
 // How many tables a method may have of its own.
 const uint TABLES = 5u;
 // Step of points: positions are sums of weighted control vertices.
@@ -98,6 +100,8 @@ const uint CHILD_OF_QUAD = 1u;
 const uint CHILD_OF_TRIANGLE = 5u;
 // Flag of a `TablePlace`: the edge runs against the direction of that face.
 const uint PLACE_FLIPPED = 2147483648u;
+// Flag of a `TableFace`'s normals: the weights there are two rows a point, of the limit's tangents.
+const uint TABLE_TANGENTS = 2147483648u;
 // Frame flag: spacing is fractional-even, else equal.
 const uint FRAME_FRACTIONAL_EVEN = 1u;
 // Frame flag: slots come from the host, else from the batch's counter.
@@ -106,6 +110,12 @@ const uint FRAME_HOST_SLOTS = 2u;
 const uint FRAME_CAPTURE = 4u;
 // Frame flag: vertices whose position has an odd number of bits are drawn elsewhere, so that cracks show.
 const uint FRAME_PARITY = 8u;
+// Frame flag: patches have levels of their own, else all the frame's.
+const uint FRAME_ADAPTIVE = 16u;
+// The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
+const uint PATTERN_SHIFT = 7u;
+// Rows of a patch's lattice that the geometry shader can make: one an invocation.
+const uint GEOMETRY_ROWS = 32u;
 // Counter: patches that found no room in the ring and were not drawn.
 const uint COUNTER_OVERFLOWS = 0u;
 // Counter: points computed, over all batches.
@@ -124,6 +134,16 @@ const uint SHADING_NODE = 3u;
 const uint SHADING_VALENCE = 4u;
 // Shading: one dark colour, for lines.
 const uint SHADING_LINES = 5u;
+
+// What the host decides about a patch before it is drawn.
+struct PatchDraw {
+    // Where its slot in the scratch ring begins, when the host gives slots.
+    uint slot;
+    // Levels of its edges from corner i to corner i + 1, when it has levels of its own.
+    vec4 edges;
+    // The level of its inside.
+    float inside;
+};
 
 // A patch: a triangle, a quad, or the part of an n-gon at one of its corners.
 struct Patch {
@@ -225,6 +245,9 @@ struct TableFace {
     uint corners;
     // Segments of an edge: a power of two.
     uint segments;
+    // The face, with the same lattice, whose points and weights give normals: itself where they are those of positions. With
+    // `TABLE_TANGENTS`, which give the limit's own.
+    uint normals;
 };
 
 // Where an edge or a vertex is evaluated: on a face that all who share it agree upon.
@@ -269,6 +292,8 @@ struct Frame {
     uint counter;
     // Vertices that the capture holds.
     uint capture_vertices;
+    // Where patterns are drawn, the segments of an edge of their lattice.
+    uint segments;
     // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
     vec2 displacement;
 };

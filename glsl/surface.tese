@@ -21,6 +21,6 @@ const uint in_slot = 0u;
 
 void main() {
     Patch record = patch_record(in_patch);
-    vec2 uv = shared_coordinates(record, patch_levels(record), gl_TessCoord);
+    vec2 uv = shared_coordinates(record, patch_levels(in_patch, record), gl_TessCoord);
     write_vertex(record, in_patch, uv, evaluate_patch(record, in_slot, uv));
 }

@@ -35,6 +35,12 @@ impl Shared for [f32; 3] {
     }
 }
 
+impl Shared for [f32; 4] {
+    fn declare(name: &str) -> String {
+        format!("vec4 {name}")
+    }
+}
+
 impl Shared for [[f32; 4]; 4] {
     fn declare(name: &str) -> String {
         format!("mat4 {name}")
@@ -110,8 +116,8 @@ constants! {
     BINDING_SCRATCH = 4;
     /// Set 0, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
     BINDING_COUNTERS = 5;
-    /// Set 0, binding: where each patch's slot begins, when the host allocates.
-    BINDING_SLOTS = 6;
+    /// Set 0, binding: `PatchDraw` records, what the host decides about each patch.
+    BINDING_DRAWS = 6;
     /// Set 0, binding: the number of captured vertices, then the `Captured` records.
     BINDING_CAPTURE = 7;
     /// Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
@@ -120,8 +126,10 @@ constants! {
     BINDING_POINT_ROWS = 9;
     /// Set 0, binding: `PointTerm` records.
     BINDING_POINT_TERMS = 10;
+    /// Set 0, binding: the patch of each instance, where patterns are drawn.
+    BINDING_INSTANCES = 11;
     /// Set 0, binding: the first of a method's own tables.
-    BINDING_TABLES = 11;
+    BINDING_TABLES = 12;
     /// How many tables a method may have of its own.
     TABLES = 5;
 
@@ -200,6 +208,8 @@ constants! {
     CHILD_OF_TRIANGLE = 5;
     /// Flag of a `TablePlace`: the edge runs against the direction of that face.
     PLACE_FLIPPED = 0x8000_0000;
+    /// Flag of a `TableFace`'s normals: the weights there are two rows a point, of the limit's tangents.
+    TABLE_TANGENTS = 0x8000_0000;
 
     /// Frame flag: spacing is fractional-even, else equal.
     FRAME_FRACTIONAL_EVEN = 1;
@@ -209,6 +219,13 @@ constants! {
     FRAME_CAPTURE = 4;
     /// Frame flag: vertices whose position has an odd number of bits are drawn elsewhere, so that cracks show.
     FRAME_PARITY = 8;
+    /// Frame flag: patches have levels of their own, else all the frame's.
+    FRAME_ADAPTIVE = 16;
+
+    /// The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
+    PATTERN_SHIFT = 7;
+    /// Rows of a patch's lattice that the geometry shader can make: one an invocation.
+    GEOMETRY_ROWS = 32;
 
     /// Counter: patches that found no room in the ring and were not drawn.
     COUNTER_OVERFLOWS = 0;
@@ -232,6 +249,16 @@ constants! {
 }
 
 structs! {
+    /// What the host decides about a patch before it is drawn.
+    PatchDraw {
+        /// Where its slot in the scratch ring begins, when the host gives slots.
+        slot: u32,
+        /// Levels of its edges from corner i to corner i + 1, when it has levels of its own.
+        edges: [f32; 4],
+        /// The level of its inside.
+        inside: f32,
+    }
+
     /// A patch: a triangle, a quad, or the part of an n-gon at one of its corners.
     Patch {
         /// Its ptex face.
@@ -332,6 +359,9 @@ structs! {
         corners: u32,
         /// Segments of an edge: a power of two.
         segments: u32,
+        /// The face, with the same lattice, whose points and weights give normals: itself where they are those of positions. With
+        /// `TABLE_TANGENTS`, which give the limit's own.
+        normals: u32,
     }
 
     /// Where an edge or a vertex is evaluated: on a face that all who share it agree upon.
@@ -376,6 +406,8 @@ structs! {
         counter: u32,
         /// Vertices that the capture holds.
         capture_vertices: u32,
+        /// Where patterns are drawn, the segments of an edge of their lattice.
+        segments: u32,
         /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
         displacement: [f32; 2],
     }

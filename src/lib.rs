@@ -20,8 +20,7 @@
 //! ```
 //! use hullform::glam::Vec2;
 //! use hullform::mesh::{ControlMesh, Model};
-//! use hullform::method::{from_ptex, method};
-//! use hullform::plan::PlanOptions;
+//! use hullform::method::{MethodOptions, from_ptex, method};
 //! use hullform::subdivision::LimitSurface;
 //!
 //! // A cube whose top is held by a semi-sharp crease.
@@ -44,7 +43,7 @@
 //!
 //! // What the GPU would get, by the quadtree method: here one pass of six patches and their plans.
 //! let model = Model::new(mesh);
-//! let prepared = method("quadtree")?.prepare(&model, PlanOptions::default())?;
+//! let prepared = method("quadtree")?.prepare(&model, MethodOptions::default())?;
 //! let pass = &prepared.passes[0];
 //! assert_eq!(pass.patches.len(), 6);
 //!

@@ -216,7 +216,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 16] = [
+const NAMED: [(&str, &str, &str); 17] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/edges/pictures.rs", "quadtree", RING),
@@ -233,6 +233,7 @@ const NAMED: [(&str, &str, &str); 16] = [
     ("tests/cli_compare.rs", "flat", WORDS),
     ("tests/cli_models.rs", "quadtree", WORDS),
     ("tests/cli_models.rs", "flat", WORDS),
+    ("tests/cli_compare.rs", "bft", WORDS),
 ];
 
 const PLANS: &str = "it is about plans, which one method has";

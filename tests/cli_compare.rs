@@ -91,6 +91,69 @@ fn every_method_is_compared_or_refused_and_a_method_hardly_differs_from_its_twin
     assert!(number(&twin["position_error"]["maximum"]) <= 1e-6, "{twin}");
 }
 
+/// Options of tables go to every method that has any; where none has, they are refused.
+#[test]
+fn options_of_tables_are_used_or_refused() {
+    let (folder, png) = scratch();
+    let start = ["compare", "builtin:cube", "-o", &png, "--methods"];
+    let refused = |more: &[&str], option: &str| {
+        let words = fails(&[&start[..], more].concat(), 2);
+        assert!(words.contains(option), "{words}");
+    };
+    refused(
+        &["flat,quadtree", "--table-level", "3"],
+        "--table-level: no tables are used by flat, quadtree",
+    );
+    refused(
+        &["flat", "--geometric-normals"],
+        "choose a method that has tables (bft)",
+    );
+    refused(&["bft", "--table-level", "7"], "1..=6");
+    refused(&["bft", "--shading-level", "3"], "0..=2");
+    refused(
+        &["bft", "--shading-level", "0", "--geometric-normals"],
+        "cannot be used with",
+    );
+    let csv = folder.path().join("out.csv");
+    let csv = csv.to_str().expect("UTF-8");
+    let words = fails(
+        &[
+            "tessellate",
+            "builtin:cube",
+            "-o",
+            csv,
+            "--shading-level",
+            "2",
+        ],
+        2,
+    );
+    assert!(
+        words.contains("--shading-level: no tables are used by quadtree"),
+        "{words}"
+    );
+    assert_eq!(entries(&folder), 0);
+    if has_device() {
+        let off = |level: &str| {
+            let small = ["--size", "32x24", "--level", "8", "--json"];
+            let more = ["bft,flat", "--table-level", level];
+            let output = run(&[&start[..], &more, &small].concat());
+            assert!(output.status.success(), "{}", stderr(&output));
+            let report: Value = serde_json::from_slice(&output.stdout).expect("JSON alone");
+            let bft = report["methods"][0].clone();
+            (
+                number(&bft["vertices"]),
+                number(&bft["position_error"]["maximum"]),
+            )
+        };
+        let (coarse, fine) = (off("1"), off("3"));
+        // Level 1 bounds the tess level by 4.
+        assert!(
+            coarse.0 < fine.0 && coarse.1 <= 1e-6 && fine.1 <= 1e-6,
+            "{coarse:?} {fine:?}"
+        );
+    }
+}
+
 #[test]
 fn bad_input_is_named_and_writes_nothing() {
     let (folder, png) = scratch();

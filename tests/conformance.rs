@@ -12,13 +12,15 @@ use common::cli::{fails, has_device, run, stderr, stdout};
 use serde_json::Value;
 
 /// A part of each group that is quick and whose cases no driver is known to fail.
-const PARTS: [&str; 12] = [
+const PARTS: [&str; 14] = [
     "coordinates.quads-equal.*",
     "coordinates.triangles-fractional_odd.*",
     "limit.valence.boundary-[1-5]",
     "limit.kind.*-equal",
     "edges.kind.s*-equal",
     "edges.picture-*.[bc]*-equal",
+    "backends.same.*-qas-*-cube",
+    "backends.tags.*-bft-loop-cube-*",
     "scale.*.draw-1025_patches-*-from_70000",
     "scale.vertices_per_batch.*-1023_patches-*",
     "visibility.coherent.*",

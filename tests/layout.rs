@@ -47,6 +47,7 @@ fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
             abi::BINDING_POINT_ROWS => Some("PointRow"),
             abi::BINDING_POINT_TERMS => Some("PointTerm"),
             // The tables of this method; another's are its own.
+            abi::BINDING_DRAWS => Some("PatchDraw"),
             abi::BINDING_TABLES if module.starts_with("quadtree.") => Some("PlanHeader"),
             TABLE_1 if module.starts_with("quadtree.") => Some("Node"),
             TABLE_1 if module.starts_with("bft") => Some("TableFace"),
@@ -61,7 +62,7 @@ fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
 fn plain_stride(binding: u32) -> Option<u32> {
     match binding {
         abi::BINDING_POSITIONS => Some(12),
-        abi::BINDING_CONTROLS | abi::BINDING_COUNTERS | abi::BINDING_SLOTS => Some(4),
+        abi::BINDING_CONTROLS | abi::BINDING_COUNTERS | abi::BINDING_INSTANCES => Some(4),
         abi::BINDING_TEXTURE => Some(8),
         abi::BINDING_SCRATCH => Some(16),
         _ => None,

@@ -2,7 +2,7 @@
 #ifndef CONTROL_POINTS_GLSL
 #define CONTROL_POINTS_GLSL
 
-#ifdef STAGE_EVALUATION
+#if defined(STAGE_EVALUATION) && !defined(WHOLE_PATCH)
 layout(location = 2) in vec3 in_point[];
 #endif
 

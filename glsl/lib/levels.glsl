@@ -1,4 +1,4 @@
-// Tess levels of a patch, a function of its edges alone on each edge. Twin of `tessellation::levels`.
+// Tess levels of a patch, a function of its edges alone on each edge. Twin of `tessellation/levels.rs`.
 #ifndef LEVELS_GLSL
 #define LEVELS_GLSL
 
@@ -10,9 +10,12 @@ struct Levels {
     float inside;
 };
 
+// The levels that the host gives the patch, or else those of a patch whose quad has the frame's level.
+//
 // Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge, so that both have a vertex in the middle and all
 // vertices line up: 2k and k with equal spacing, 4k and 2k with fractional-even (Brainerd et al. 2016, section 7.2).
-Levels patch_levels(Patch record) {
+Levels patch_levels(uint number, Patch record) {
+    if ((frame.flags & FRAME_ADAPTIVE) != 0u) return Levels(draws[number].edges, draws[number].inside);
     float level = clamp(frame.level, 1.0, 64.0);
     bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
     precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
@@ -41,14 +44,22 @@ float step_of(uint i, uint n) {
 
 #ifdef TRIANGLES
 // (u, v) of a triangle's point, from its barycentric coordinates: corner 0 is (0, 0), 1 is (1, 0), 2 is (0, 1). On edges they are whole steps
-// of 2^-16, as tessellators count: so 1 - t is exact, and both sides of an edge have the same pair.
+// of 2^-16, as tessellators count: so 1 - t is exact, and both sides of an edge have the same pair. Where quads may be on the other side,
+// of which tessellators need not count in the same way, both count vertices.
 vec2 shared_coordinates(Patch record, Levels levels, vec3 barycentric) {
     vec2 uv = barycentric.yz;
     if (min(barycentric.x, min(uv.x, uv.y)) > 0.0) return uv;
-    precise vec2 whole = roundEven(uv * 65536.0);
-    precise vec2 steps = whole * (1.0 / 65536.0);
-    precise float rest = 1.0 - steps.x;
-    return barycentric.x <= 0.0 ? vec2(steps.x, rest) : steps;
+    uint edge = uv.y <= 0.0 ? 0u : barycentric.x <= 0.0 ? 1u : 2u;
+    precise float along = edge == 0u ? uv.x : uv.y;
+    precise float t = roundEven(along * 65536.0) / 65536.0;
+    if ((record.flags & PATCH_REFINED) != 0u) {
+        uint segments = uint(levels.edges[edge]);
+        precise float steps = along * float(segments) + 0.5;
+        t = step_of(uint(steps), segments);
+    }
+    precise float rest = 1.0 - t;
+    if (edge == 0u) return vec2(t, uv.y);
+    return vec2(edge == 1u ? rest : uv.x, t);
 }
 #else
 // Of an edge beside an n-gon both sides must have the same coordinates, but what the tessellator makes of a quad's 1/6 may differ from half

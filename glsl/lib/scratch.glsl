@@ -11,7 +11,6 @@
 
 layout(set = 0, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
 layout(set = 0, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };
-layout(set = 0, binding = BINDING_SLOTS, scalar) readonly buffer SlotTable { uint slots[]; };
 
 const uint NO_SLOT = 0xffffffffu;
 
@@ -22,7 +21,7 @@ const uint NO_SLOT = 0xffffffffu;
 uint take_slot(uint number, uint points) {
     atomicAdd(counters[COUNTER_POINTS], points);
     bool host = (frame.flags & FRAME_HOST_SLOTS) != 0u;
-    uint slot = host ? slots[number] : atomicAdd(counters[frame.counter], points);
+    uint slot = host ? draws[number].slot : atomicAdd(counters[frame.counter], points);
     if (points <= frame.ring_points && slot <= frame.ring_points - points) return slot;
     atomicAdd(counters[COUNTER_OVERFLOWS], 1u);
     return NO_SLOT;

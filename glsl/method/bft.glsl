@@ -65,8 +65,9 @@ Spot spot(vec2 uv) {
     return found;
 }
 
-// The sum over the face's points (equation 1), from the last to the first; the same weights for normals are subdivision shading.
-Point summed(TableFace face, Shares shares) {
+// The sum over the face's points (equation 1), from the last to the first; the same weights for normals are subdivision shading (section
+// II-C). Normals have any length.
+Point weighted(TableFace face, Shares shares) {
     precise vec3 position = vec3(0.0);
     precise vec3 normal = vec3(0.0);
     for (uint i = face.count; i-- > 0u;) {
@@ -79,7 +80,40 @@ Point summed(TableFace face, Shares shares) {
         position += weight * point.position;
         normal += weight * point.normal;
     }
-    return Point(position, direction(normal));
+    return Point(position, normal);
+}
+
+// The normal from tangents (section II-C) at each point of the lattice, linear between. Their weights sum to zero, so they are sums of
+// differences, which lose less.
+vec3 limit_normal(TableFace face, Shares shares) {
+    vec3 origin = points[controls[face.controls]].position;
+    precise vec3 normal = vec3(0.0);
+    for (uint k = 0u; k < 4u; ++k) {
+        if (shares.shares[k] == 0.0) continue;
+        uint first = face.weights + 2u * shares.rows[k] * face.count;
+        precise vec3 du = vec3(0.0);
+        precise vec3 dv = vec3(0.0);
+        for (uint i = face.count; i-- > 0u;) {
+            precise vec3 spoke = points[controls[face.controls + i]].position - origin;
+            du += weights[first + i] * spoke;
+            dv += weights[first + face.count + i] * spoke;
+        }
+        normal += shares.shares[k] * surface_normal(Surface(origin, du, dv));
+    }
+    return normal;
+}
+
+// A point of a face, whose normal may come from another table.
+Point summed(uint number, Shares shares) {
+    TableFace face = faces[number];
+    Point point = weighted(face, shares);
+    if (face.normals != number) {
+        TableFace other = faces[face.normals & ~TABLE_TANGENTS];
+        if ((face.normals & TABLE_TANGENTS) != 0u) point.normal = limit_normal(other, shares);
+        else point.normal = weighted(other, shares).normal;
+    }
+    point.normal = direction(point.normal);
+    return point;
 }
 
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
@@ -87,7 +121,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint first = record.plan * 2u * CORNERS;
     if (found.corner != NOWHERE) {
         TablePlace place = places[first + CORNERS + found.corner];
-        return summed(faces[place.face], Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0)));
+        return summed(place.face, Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0)));
     }
     if (found.edge != NOWHERE) {
         TablePlace place = places[first + found.edge];
@@ -95,9 +129,9 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
         bool flipped = (place.side & PLACE_FLIPPED) != 0u;
         precise float reverse = 1.0 - found.along;
         precise float at = (flipped ? reverse : found.along) * float(face.segments);
-        return summed(face, lattice_along(face, place.side & ~PLACE_FLIPPED, at));
+        return summed(place.face, lattice_along(face, place.side & ~PLACE_FLIPPED, at));
     }
-    return summed(faces[record.plan], lattice_inside(faces[record.plan], uv));
+    return summed(record.plan, lattice_inside(faces[record.plan], uv));
 }
 #endif
 

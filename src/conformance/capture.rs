@@ -9,12 +9,12 @@ use crate::abi::{self, Captured};
 use crate::conformance::Context;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target, TessellatedSurface,
-    View, Workaround, ring,
+    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target,
+    TessellatedSurface, View, Workaround, ring,
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
-use crate::method::{Displacement, Prepared, method};
+use crate::method::{DepthTags, Displacement, Prepared, method};
 use crate::plan::PlanOptions;
 use crate::tessellation::Spacing;
 
@@ -24,8 +24,8 @@ pub const SIDE: u32 = 256;
 /// The most vertices that are captured in one submission: 36 MB.
 const MOST_CAPTURED: u32 = 1_000_000;
 
-/// What pipelines depend on: the shaders of the passes, spacing, and what becomes of the triangles.
-type PipelineKey = (Vec<&'static str>, Spacing, bool);
+/// What pipelines depend on: the shaders of the passes, who cuts, spacing, and what becomes of the triangles.
+type PipelineKey = (Vec<&'static str>, Backend, Spacing, bool);
 
 /// A device with what surfaces share, kept from case to case: pipelines take long to build.
 pub struct Bench {
@@ -80,6 +80,7 @@ impl Bench {
             bench: self,
             options,
             view: from_the_side(reach(model)),
+            tags: None,
             surface: Some(surface?),
         };
         self.device.submit(|cmd| {
@@ -97,15 +98,16 @@ impl Bench {
     fn with_pipelines<T>(
         &self,
         prepared: &Prepared,
+        backend: Backend,
         spacing: Spacing,
         fill: Fill,
         use_them: impl FnOnce(&Pipelines) -> Result<T>,
     ) -> Result<T> {
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, spacing, fill == Fill::Discard);
+        let key = (shaders, backend, spacing, fill == Fill::Discard);
         let mut all = self.pipelines.borrow_mut();
         if !all.contains_key(&key) {
-            let built = self.build(prepared, spacing, fill, vk::PipelineCache::null())?;
+            let built = self.build(prepared, backend, spacing, fill, vk::PipelineCache::null())?;
             all.insert(key.clone(), built);
         }
         use_them(&all[&key])
@@ -115,6 +117,7 @@ impl Bench {
     fn build(
         &self,
         prepared: &Prepared,
+        backend: Backend,
         spacing: Spacing,
         fill: Fill,
         cache: vk::PipelineCache,
@@ -125,7 +128,11 @@ impl Bench {
         };
         let (device, layout) = (self.device.raw(), self.layout());
         // SAFETY: all of one live device.
-        unsafe { Pipelines::new(device, layout, cache, prepared, target, spacing, fill) }
+        unsafe {
+            Pipelines::new(
+                device, layout, cache, prepared, target, backend, spacing, fill,
+            )
+        }
     }
 
     /// Forgets all pipelines, builds new ones for a prepared model with a cache that holds `data`, and returns what the cache holds then.
@@ -142,7 +149,8 @@ impl Bench {
         // SAFETY: the device is live; the data are empty or what this device gave.
         let cache = unsafe { device.create_pipeline_cache(&info, None) }
             .map_err(crate::gpu::failed("vkCreatePipelineCache"))?;
-        let built = self.build(prepared, spacing, fill, cache);
+        let backend = Backend::Tessellator;
+        let built = self.build(prepared, backend, spacing, fill, cache);
         // SAFETY: the cache is ours, and the pipelines do not need it any more.
         let held = unsafe {
             let held = device.get_pipeline_cache_data(cache);
@@ -150,7 +158,7 @@ impl Bench {
             held.map_err(crate::gpu::failed("vkGetPipelineCacheData"))
         };
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, spacing, fill == Fill::Discard);
+        let key = (shaders, backend, spacing, fill == Fill::Discard);
         self.pipelines.borrow_mut().insert(key, built?);
         held
     }
@@ -206,6 +214,8 @@ pub struct Loaded<'a> {
     options: SurfaceOptions,
     /// What pictures show: from the side, everything within the picture and its depth.
     pub view: View,
+    /// A depth for each control vertex, where levels go by them.
+    pub tags: Option<DepthTags>,
     surface: Option<TessellatedSurface>,
 }
 
@@ -240,11 +250,18 @@ impl Loaded<'_> {
         self.surface().prepared()
     }
 
+    fn write_draws(&mut self, cut: Cut, batches: &[Batch]) -> Result<()> {
+        let device = &self.bench.device;
+        let (allocator, tags) = (&mut device.allocator(), self.tags.as_ref());
+        let surface = self.surface.as_mut().expect("there from load to drop");
+        // SAFETY: device and allocator made the surface; every submission has been waited for.
+        unsafe { surface.write_draws(device.raw(), allocator, cut, tags, batches) }
+    }
+
     /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
     pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
         let batches = self.surface().batches(cut)?;
-        let surface = self.surface.as_mut().expect("there from load to drop");
-        surface.write_slots(cut, &batches);
+        self.write_draws(cut, &batches)?;
         let mut all = Frame {
             passes: vec![Vec::new(); self.prepared().passes.len()],
             ..Default::default()
@@ -288,8 +305,12 @@ impl Loaded<'_> {
         let counts = device.info().support.optional.pipeline_statistics_query;
         let query = counts.then(|| StatisticsQuery::new(device)).transpose()?;
         let (raw, prepared) = (device.raw(), self.prepared());
-        self.bench
-            .with_pipelines(prepared, cut.spacing, fill, |pipelines| {
+        self.bench.with_pipelines(
+            prepared,
+            self.options.backend,
+            cut.spacing,
+            fill,
+            |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 device.submit(|cmd| unsafe {
                     self.surface().cmd_prepare(raw, cmd);
@@ -308,7 +329,8 @@ impl Loaded<'_> {
                     self.surface().cmd_read_back(raw, cmd);
                     Ok(())
                 })
-            })?;
+            },
+        )?;
         let expected = batches.iter().map(|batch| batch.vertices).sum();
         let (captured, differing) = self.captured(expected)?;
         Ok(Frame {
@@ -345,12 +367,15 @@ impl Loaded<'_> {
     /// Draws everything at a cut into one picture: the alpha of its pixels, 0 where nothing is.
     pub fn picture(&mut self, cut: Cut) -> Result<Vec<u8>> {
         let batches = self.surface().batches(cut)?;
-        let surface = self.surface.as_mut().expect("there from load to drop");
-        surface.write_slots(cut, &batches);
+        self.write_draws(cut, &batches)?;
         let Bench { device, target, .. } = self.bench;
         let (raw, prepared) = (device.raw(), self.prepared());
-        self.bench
-            .with_pipelines(prepared, cut.spacing, Fill::Solid, |pipelines| {
+        self.bench.with_pipelines(
+            prepared,
+            self.options.backend,
+            cut.spacing,
+            Fill::Solid,
+            |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 device.submit(|cmd| unsafe {
                     self.surface().cmd_prepare(raw, cmd);
@@ -361,7 +386,8 @@ impl Loaded<'_> {
                     target.cmd_copy_to_host(cmd);
                     Ok(())
                 })
-            })?;
+            },
+        )?;
         match self.surface().counters().overflows {
             0 => Ok(target
                 .read_pixels()

@@ -19,8 +19,8 @@ use crate::error::{Error, Result};
 use crate::gpu::{Cut, Fill};
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
 use crate::method::{
-    Controls, METHODS, Method, Pass, Prepared, Reproduces, is_on_hexagon, method, method_for,
-    to_ptex,
+    Controls, METHODS, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals,
+    is_on_hexagon, method, method_for, to_ptex,
 };
 use crate::plan::{PlanOptions, Plans, walk};
 use crate::subdivision::{LimitSurface, is_cusp, vertex_limit};
@@ -45,7 +45,7 @@ const SAMPLES: usize = 1500;
 struct Setup {
     /// By default whichever draws the scheme.
     method: Option<&'static str>,
-    options: PlanOptions,
+    options: MethodOptions,
     cut: Cut,
     /// Only what is evaluated so.
     kind: Option<Kind>,
@@ -55,7 +55,7 @@ impl Setup {
     fn new(level: f32, spacing: Spacing) -> Setup {
         Setup {
             method: None,
-            options: PlanOptions::default(),
+            options: MethodOptions::default(),
             cut: cut(level, spacing),
             kind: None,
         }
@@ -83,6 +83,7 @@ fn cases() -> Vec<Case> {
     cases.extend(shapes());
     cases.extend(lattice::cases());
     cases.extend(hexagon::cases());
+    cases.extend(lattice::tables());
     cases.extend(places());
     cases.extend((0..30).map(|number| {
         let setup = Setup::new(9.0, SPACINGS[number % 2]);
@@ -210,7 +211,7 @@ fn depths() -> impl Iterator<Item = Case> {
         };
         let level = (1u32 << max_level).min(20) as f32;
         let setup = Setup {
-            options,
+            options: options.into(),
             ..Setup::new(level, Spacing::Equal)
         };
         case(format!("limit.depth.{max_level}_levels"), setup, |_| {
@@ -218,10 +219,10 @@ fn depths() -> impl Iterator<Item = Case> {
         })
     });
     let refined = Setup {
-        options: PlanOptions {
+        options: MethodOptions::from(PlanOptions {
             direct_creases: false,
             ..Default::default()
-        },
+        }),
         ..Setup::new(9.0, Spacing::Equal)
     };
     let name = "limit.depth.refined_creases".to_owned();
@@ -308,7 +309,7 @@ fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
     let frame = captured(context, model, prepared, setup.cut, Fill::Discard)?;
     let ruler = Ruler {
         model,
-        right: right(context, model, method, &passes)?,
+        right: right(context, model, method, &passes, setup.options)?,
         unit: diagonal(model.mesh()) * 0.5f64.powi(23),
         most: within(method) * 2f64.powi(23),
         most_degrees: method.contract.normals.unwrap_or(0.1),
@@ -357,21 +358,35 @@ enum Right {
     /// The surface in f64 at six places of each triangle, normals too where they are sure; the method's own elsewhere. The second surface is the
     /// first, refined.
     Hexagon([Box<LimitSurface>; 2], Controls),
+    /// The same, and on the lattice the surface's normals as well.
+    LatticeNormals(Box<LimitSurface>, Controls),
 }
 
 /// The truth of a method's contract: the limit, everywhere or on a lattice, or linear faces. A method with a surface of its own, and plain
 /// triangles, are held to the CPU's twin.
-fn right(context: &Context, model: &Model, method: &Method, prepared: &Prepared) -> Result<Right> {
+fn right(
+    context: &Context,
+    model: &Model,
+    method: &Method,
+    prepared: &Prepared,
+    options: MethodOptions,
+) -> Result<Right> {
     let own = model.mesh().options().scheme;
     let moved = if context.is_wrong() { 1e-3 } else { 0.0 };
     let twin = || twin(model, prepared, moved);
     Ok(match method.contract.reproduces {
         Reproduces::Limit(_) => Right::Truth(truth(model.mesh(), own, moved)?),
-        Reproduces::LimitOnLattice(_) => Right::Lattice(truth(model.mesh(), own, moved)?, twin()),
         Reproduces::LimitOnHexagon(_) => {
             let truth = truth(model.mesh(), own, moved)?;
             let finer = Box::new(truth.refined());
             Right::Hexagon([truth, finer], twin())
+        }
+        Reproduces::LimitOnLattice(_) => {
+            let lattice = match options.tables.normals {
+                TableNormals::Geometric => Right::LatticeNormals,
+                TableNormals::Shading(_) => Right::Lattice,
+            };
+            lattice(truth(model.mesh(), own, moved)?, twin())
         }
         Reproduces::Faces(_) if own == Scheme::CatmullClark => {
             Right::Truth(truth(model.mesh(), Scheme::Bilinear, moved)?)
@@ -494,6 +509,10 @@ impl Ruler<'_> {
                     false => Some(twin),
                 }
             }
+            Right::LatticeNormals(truth, controls) => match pass.is_on_lattice(vertex.uv) {
+                true => self.of_truth(truth, ptex, uv),
+                false => Some(self.of_twin(controls, pass, vertex)),
+            },
         };
         let Some((position, normal)) = right else {
             check.hold(false, || format!("ptex face {ptex} is a hole"));

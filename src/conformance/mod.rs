@@ -9,6 +9,7 @@
 //!
 //! What the suite found in drivers stands in [`bugs`].
 
+pub mod backends;
 pub mod bugs;
 mod capture;
 mod case;

@@ -3,7 +3,8 @@
 use glob::Pattern;
 
 use crate::conformance::{
-    Case, coordinates, determinism, edges, limit, robustness, scale, statistics, visibility,
+    Case, backends, coordinates, determinism, edges, limit, robustness, scale, statistics,
+    visibility,
 };
 use crate::error::{Error, Result};
 
@@ -25,6 +26,7 @@ pub const GROUPS: &[Group] = &[
     coordinates::GROUP,
     limit::GROUP,
     edges::GROUP,
+    backends::GROUP,
     scale::GROUP,
     visibility::GROUP,
     determinism::GROUP,

@@ -2,6 +2,7 @@
 
 use crate::abi;
 use crate::error::{Error, Result};
+use crate::gpu::backend::Backend;
 use crate::method::{Pass, Prepared};
 use crate::tessellation::{Levels, Spacing, levels, required_level};
 
@@ -50,7 +51,7 @@ pub struct Batch {
     pub end: u32,
     /// Points that its patches need in the ring.
     pub points: u32,
-    /// Vertices that its patches make.
+    /// Vertices that are captured of its patches; fewer where depth tags lower their levels.
     pub vertices: u32,
     /// Which of the batches that use the ring this is.
     pub ring_batch: u32,
@@ -70,6 +71,8 @@ pub(crate) struct Bounds {
     pub points: u32,
     /// Vertices.
     pub vertices: u32,
+    /// Who makes them.
+    pub backend: Backend,
 }
 
 /// Cuts all passes into batches within the bounds.
@@ -77,12 +80,15 @@ pub(crate) struct Bounds {
 /// # Errors
 /// [`Error::Option`] when one patch alone needs more points than the ring has.
 pub(crate) fn batches(prepared: &Prepared, cut: Cut, bounds: Bounds) -> Result<Vec<Batch>> {
+    let cut = bounds.backend.cut(cut);
     let mut batches: Vec<Batch> = Vec::new();
     let mut ring_batch = 0;
     for (number, pass) in prepared.passes.iter().enumerate() {
         let mut open: Option<Batch> = None;
         for patch in 0..pass.patches.len() {
-            let (points, vertices) = (cut.points(pass, patch), cut.vertices(pass, patch));
+            let points = cut.points(pass, patch);
+            let levels = cut.levels(pass, patch);
+            let vertices = bounds.backend.vertices(&levels, cut.spacing);
             if points > bounds.points {
                 return Err(too_small(points));
             }

@@ -4,10 +4,11 @@ use ash::vk;
 use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
+use crate::gpu::backend::Backend;
 use crate::gpu::batches::{Batch, Cut};
 use crate::gpu::layout::STAGES;
 use crate::gpu::options::Slots;
-use crate::gpu::ring::{RING_ACCESS, RING_STAGES, cmd_ring_barrier};
+use crate::gpu::ring::{RING_ACCESS, cmd_ring_barrier};
 use crate::gpu::surface::TessellatedSurface;
 use crate::gpu::workaround::patches_per_instance;
 use crate::gpu::{Layout, Pipelines};
@@ -37,11 +38,13 @@ pub struct View {
 }
 
 /// Some patches, the same number in each instance.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Draw {
     first: u32,
     patches_per_instance: u32,
     instances: u32,
+    /// Where patterns are drawn, the segments of an edge of their lattice.
+    segments: u32,
 }
 
 impl TessellatedSurface {
@@ -55,7 +58,7 @@ impl TessellatedSurface {
             return;
         };
         let stages = vk::PipelineStageFlags::VERTEX_SHADER
-            | RING_STAGES
+            | self.options.backend.stages()
             | vk::PipelineStageFlags::FRAGMENT_SHADER
             | vk::PipelineStageFlags::COMPUTE_SHADER;
         let transfer = vk::PipelineStageFlags::TRANSFER;
@@ -90,31 +93,26 @@ impl TessellatedSurface {
 
     /// Records what a frame needs before its render pass: counters at zero, and the ring free of earlier frames' use.
     ///
-    /// It waits for the control and evaluation shaders of all earlier commands on the queue. Frames that shall overlap need a surface each.
+    /// It waits for the control and evaluation shaders (or whatever evaluates patches) of all earlier commands on the queue. Frames that shall overlap need a surface each.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made this surface, outside of a render pass, and is submitted to the queue of the
     /// surface's earlier frames. The surface lives until the commands have been executed.
     pub unsafe fn cmd_prepare(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
         let transfer = vk::PipelineStageFlags::TRANSFER;
+        let stages = self.options.backend.stages();
         // SAFETY: this function's contract; vkCmdFillBuffer is not allowed inside a render pass, hence this function.
         unsafe {
             cmd_make_visible(
                 device,
                 cmd,
-                RING_STAGES | transfer,
+                stages | transfer,
                 transfer,
                 vk::AccessFlags::TRANSFER_WRITE,
             );
             device.cmd_fill_buffer(cmd, self.buffers.counters().raw(), 0, vk::WHOLE_SIZE, 0);
             device.cmd_fill_buffer(cmd, self.buffers.capture().raw(), 0, 4, 0);
-            cmd_make_visible(
-                device,
-                cmd,
-                transfer | RING_STAGES,
-                RING_STAGES,
-                RING_ACCESS,
-            );
+            cmd_make_visible(device, cmd, transfer | stages, stages, RING_ACCESS);
         }
     }
 
@@ -130,7 +128,7 @@ impl TessellatedSurface {
     /// `pipelines` were built for this surface's [`Prepared`](crate::method::Prepared) and the spacing of `cut`, `layout` is the one that
     /// made them and the surface. `batch` is one of [`batches`](Self::batches) for `cut`, with a level of at most
     /// [`greatest_level`](super::SurfaceOptions::greatest_level), or its [`again`](Self::again); each is recorded at most once after
-    /// `cmd_prepare`, in their order. With [`Slots::Host`], [`write_slots`](Self::write_slots) was called for them. Surface, pipelines
+    /// `cmd_prepare`, in their order. [`write_draws`](Self::write_draws) was called for them where it is needed. Surface, pipelines
     /// and layout live until the commands have been executed.
     #[allow(clippy::too_many_arguments)]
     pub unsafe fn cmd_draw(
@@ -143,7 +141,6 @@ impl TessellatedSurface {
         cut: Cut,
         batch: &Batch,
     ) {
-        let pass = &self.prepared.passes[batch.pass];
         let graphics = vk::PipelineBindPoint::GRAPHICS;
         let sets = [self.sets[batch.pass]];
         // SAFETY: this function's contract.
@@ -151,6 +148,44 @@ impl TessellatedSurface {
             device.cmd_bind_pipeline(cmd, graphics, pipelines.get(batch.pass));
             device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
         }
+        match self.options.backend {
+            // SAFETY: this function's contract.
+            Backend::Tessellator => unsafe {
+                self.cmd_draw_patches(device, cmd, layout, view, cut, batch)
+            },
+            // SAFETY: as above.
+            Backend::Pattern => unsafe {
+                self.cmd_draw_patterns(device, cmd, layout, view, cut, batch)
+            },
+            Backend::Geometry => {
+                let count = batch.end - batch.first;
+                let draw = Draw {
+                    first: batch.first,
+                    patches_per_instance: count,
+                    instances: 1,
+                    ..Draw::default()
+                };
+                let frame = self.frame(view, cut, batch, draw);
+                // SAFETY: as above.
+                unsafe {
+                    cmd_push(device, cmd, layout, &frame);
+                    device.cmd_draw(cmd, count, 1, 0, 0);
+                }
+            }
+        }
+    }
+
+    /// # Safety
+    /// As [`cmd_draw`](Self::cmd_draw), with pipeline and set bound.
+    unsafe fn cmd_draw_patches(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        view: &View,
+        cut: Cut,
+        batch: &Batch,
+    ) {
         // The first draw of all finds the ring free; every other one waits for the one before. Two draws of a batch have slots apart, but
         // synchronization is a matter of whole buffers.
         let mut waits = batch.ring_batch > 0;
@@ -161,12 +196,47 @@ impl TessellatedSurface {
             }
             waits = true;
             let frame = self.frame(view, cut, batch, draw);
-            let vertices = draw.patches_per_instance * pass.control_points;
+            let control_points = self.prepared.passes[batch.pass].control_points;
+            let vertices = draw.patches_per_instance * control_points;
             // SAFETY: this function's contract.
             unsafe {
-                let constants = bytemuck::bytes_of(&frame);
-                device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
+                cmd_push(device, cmd, layout, &frame);
                 device.cmd_draw(cmd, vertices, draw.instances, 0, 0);
+            }
+        }
+    }
+
+    /// An instance a patch, those with the same pattern in one draw.
+    ///
+    /// # Safety
+    /// As [`cmd_draw`](Self::cmd_draw), with pipeline and set bound.
+    unsafe fn cmd_draw_patterns(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        view: &View,
+        cut: Cut,
+        batch: &Batch,
+    ) {
+        let Some((indices, draws)) = self.patterns.draws(batch) else {
+            return;
+        };
+        // SAFETY: this function's contract.
+        unsafe { device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16) };
+        for draw in draws {
+            let segments = draw.segments;
+            let of_pattern = Draw {
+                segments,
+                ..Draw::default()
+            };
+            let frame = self.frame(view, cut, batch, of_pattern);
+            let (count, instances) = (draw.indices.len() as u32, draw.instances.len() as u32);
+            let (first, first_instance) = (draw.indices.start, draw.instances.start);
+            // SAFETY: this function's contract.
+            unsafe {
+                cmd_push(device, cmd, layout, &frame);
+                device.cmd_draw_indexed(cmd, count, instances, first, 0, first_instance);
             }
         }
     }
@@ -183,11 +253,13 @@ impl TessellatedSurface {
             first: batch.first,
             patches_per_instance: per_instance,
             instances,
+            ..Draw::default()
         };
         let last = Draw {
             first: batch.end - rest,
             patches_per_instance: rest,
             instances: 1,
+            ..Draw::default()
         };
         [full, last]
             .into_iter()
@@ -205,6 +277,7 @@ impl TessellatedSurface {
 
     fn frame(&self, view: &View, cut: Cut, batch: &Batch, draw: Draw) -> abi::Frame {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+        let cut = self.options.backend.cut(cut);
         abi::Frame {
             view_projection: view.clip_from_model,
             eye: view.eye,
@@ -218,13 +291,15 @@ impl TessellatedSurface {
                 abi::FRAME_FRACTIONAL_EVEN,
             ) | flag(self.options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
                 | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE)
-                | flag(self.options.amplify_cracks, abi::FRAME_PARITY),
+                | flag(self.options.amplify_cracks, abi::FRAME_PARITY)
+                | flag(!self.tagged.is_empty(), abi::FRAME_ADAPTIVE),
             first_patch: draw.first,
             end_patch: batch.end,
             patches_per_instance: draw.patches_per_instance,
             ring_points: (self.options.ring_bytes / 16).min(u64::from(u32::MAX / 2)) as u32,
             counter: abi::COUNTER_BATCHES + batch.ring_batch,
             capture_vertices: self.options.capture_vertices,
+            segments: draw.segments,
             displacement: [view.displacement.height, view.displacement.frequency],
         }
     }
@@ -240,12 +315,13 @@ impl TessellatedSurface {
             vk::PipelineStageFlags::TRANSFER,
             vk::PipelineStageFlags::HOST,
         );
+        let stages = self.options.backend.stages();
         // SAFETY: this function's contract.
         unsafe {
             cmd_make_visible(
                 device,
                 cmd,
-                RING_STAGES,
+                stages,
                 transfer,
                 vk::AccessFlags::TRANSFER_READ,
             );
@@ -258,7 +334,7 @@ impl TessellatedSurface {
             cmd_make_visible(
                 device,
                 cmd,
-                transfer | RING_STAGES,
+                transfer | stages,
                 host,
                 vk::AccessFlags::HOST_READ,
             );
@@ -283,6 +359,19 @@ impl TessellatedSurface {
     }
 }
 
+/// # Safety
+/// `cmd` is recording on `device`, which made `layout`.
+unsafe fn cmd_push(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    layout: &Layout,
+    frame: &abi::Frame,
+) {
+    let constants = bytemuck::bytes_of(frame);
+    // SAFETY: this function's contract.
+    unsafe { device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants) };
+}
+
 /// A barrier from all writes of the stages `from` to `access` in the stages `to`.
 ///
 /// # Safety
@@ -298,7 +387,8 @@ unsafe fn cmd_make_visible(
     if from.contains(vk::PipelineStageFlags::TRANSFER) {
         written |= vk::AccessFlags::TRANSFER_WRITE;
     }
-    if from.intersects(RING_STAGES | vk::PipelineStageFlags::COMPUTE_SHADER) {
+    // Whatever evaluates patches may capture them.
+    if from != vk::PipelineStageFlags::TRANSFER {
         written |= vk::AccessFlags::SHADER_WRITE;
     }
     let barrier = vk::MemoryBarrier::default()

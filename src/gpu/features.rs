@@ -10,6 +10,8 @@ use ash::{khr, vk};
 pub struct OptionalFeatures {
     /// Wireframes (`fillModeNonSolid`).
     pub fill_mode_non_solid: bool,
+    /// The backend that cuts patches in geometry shaders (`geometryShader`).
+    pub geometry_shader: bool,
     /// Shader invocation counts (`pipelineStatisticsQuery`).
     pub pipeline_statistics_query: bool,
     /// Shading at each sample (`sampleRateShading`).
@@ -131,6 +133,7 @@ impl Support {
         set(&mut vulkan12.scalar_block_layout, true);
         let optional = self.optional;
         set(&mut core.fill_mode_non_solid, optional.fill_mode_non_solid);
+        set(&mut core.geometry_shader, optional.geometry_shader);
         set(
             &mut core.pipeline_statistics_query,
             optional.pipeline_statistics_query,
@@ -164,6 +167,7 @@ impl Support {
         self.scalar_block_layout = scalar.scalar_block_layout != 0;
         self.optional = OptionalFeatures {
             fill_mode_non_solid: core.fill_mode_non_solid != 0,
+            geometry_shader: core.geometry_shader != 0,
             pipeline_statistics_query: core.pipeline_statistics_query != 0,
             sample_rate_shading: core.sample_rate_shading != 0,
             maintenance4: maintenance4.maintenance4 != 0,

@@ -2,6 +2,7 @@
 //!
 //! The engine owns instance, device, queue and allocator; nothing here submits or waits.
 
+mod backend;
 mod batches;
 pub mod buffer;
 mod call;
@@ -10,6 +11,7 @@ pub mod driver;
 pub mod features;
 mod layout;
 mod options;
+mod patterns;
 mod pipeline;
 mod points;
 pub mod ring;
@@ -17,6 +19,7 @@ pub mod shaders;
 mod surface;
 pub mod workaround;
 
+pub use backend::Backend;
 pub use batches::{Batch, Cut};
 pub use buffer::Buffer;
 pub(crate) use call::failed;

@@ -1,5 +1,6 @@
 //! How a surface uses the device.
 
+use crate::gpu::backend::Backend;
 use crate::gpu::batches::Bounds;
 
 /// Who gives patches their slots in the scratch ring.
@@ -15,13 +16,15 @@ pub enum Slots {
 /// How a surface uses the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceOptions {
+    /// Who cuts patches into triangles.
+    pub backend: Backend,
     /// Bytes of the scratch ring.
     pub ring_bytes: u64,
     /// Who gives slots.
     pub slots: Slots,
     /// Vertices that can be captured at once; 0 for none.
     pub capture_vertices: u32,
-    /// The greatest level that will be drawn, 1..=64.
+    /// The greatest level that will be drawn, 1..=64; for [`Backend::Geometry`] at most 32.
     pub greatest_level: f32,
     /// How many times the batches are drawn after one [`cmd_prepare`](super::TessellatedSurface::cmd_prepare); see
     /// [`again`](super::TessellatedSurface::again).
@@ -36,9 +39,10 @@ pub struct SurfaceOptions {
 }
 
 impl Default for SurfaceOptions {
-    /// A ring of 1 MiB with counters, no capture, every level, barriers by `cmd_draw`.
+    /// The tessellator, a ring of 1 MiB with counters, no capture, every level, barriers by `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
+            backend: Backend::Tessellator,
             ring_bytes: 1 << 20,
             slots: Slots::Counter,
             capture_vertices: 0,
@@ -62,6 +66,7 @@ impl SurfaceOptions {
         Bounds {
             points: points.min(u64::from(u32::MAX / 2)) as u32,
             vertices,
+            backend: self.backend,
         }
     }
 }

@@ -3,7 +3,7 @@
 use ash::vk;
 
 use crate::error::{Error, Result};
-use crate::gpu::{Layout, failed, shaders};
+use crate::gpu::{Backend, Layout, failed, shaders};
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
 
@@ -24,11 +24,11 @@ pub enum Fill {
     Solid,
     /// Their edges are drawn, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
     Lines,
-    /// Nothing: only what the evaluation shader captures counts.
+    /// Nothing: only what is captured counts.
     Discard,
 }
 
-/// The pipelines of a prepared model, one a pass, for one spacing.
+/// The pipelines of a prepared model, one a pass, for one backend and spacing.
 #[derive(Debug)]
 pub struct Pipelines {
     pipelines: Vec<vk::Pipeline>,
@@ -39,14 +39,16 @@ impl Pipelines {
     /// render pass will do for drawing.
     ///
     /// # Safety
-    /// `device` is live and has the features that [`Support`](super::Support) asks for, with [`Fill::Lines`] also `fillModeNonSolid`; `layout`,
-    /// `cache` (or null) and `target` are of this device.
+    /// `device` is live and has the features that [`Support`](super::Support) asks for, with [`Fill::Lines`] also `fillModeNonSolid`, with
+    /// [`Backend::Geometry`] also `geometryShader`; `layout`, `cache` (or null) and `target` are of this device.
+    #[allow(clippy::too_many_arguments)]
     pub unsafe fn new(
         device: &ash::Device,
         layout: &Layout,
         cache: vk::PipelineCache,
         prepared: &Prepared,
         target: Target,
+        backend: Backend,
         spacing: Spacing,
         fill: Fill,
     ) -> Result<Pipelines> {
@@ -54,8 +56,9 @@ impl Pipelines {
             pipelines: Vec::new(),
         };
         for pass in &prepared.passes {
-            let modules = Modules::of(pass.shader, spacing)?;
+            let modules = modules(pass.shader, backend, spacing, fill)?;
             let plan = PipelinePlan {
+                backend,
                 control_points: pass.control_points,
                 target,
                 fill,
@@ -78,7 +81,8 @@ impl Pipelines {
     /// They are drawn like any others. [`destroy`](Self::destroy) destroys them; an engine that keeps its handles drops this instead.
     ///
     /// # Safety
-    /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input. Its layout is
+    /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
+    /// surface's backend draws. Its layout is
     /// compatible with [`Layout::pipeline`] for set 0 and has the same push constants; further sets are the engine's. Its stages read
     /// `abi::Frame` and set 0 as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
     pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>) -> Pipelines {
@@ -102,33 +106,44 @@ impl Pipelines {
     }
 }
 
-/// The words of a method's four stages.
-struct Modules([(vk::ShaderStageFlags, &'static [u32]); 4]);
+/// A stage and the words of its module.
+type Module = (vk::ShaderStageFlags, &'static [u32]);
 
-impl Modules {
-    fn of(method: &str, spacing: Spacing) -> Result<Modules> {
-        let find = |ending: String| {
-            let name = format!("{method}.{ending}");
-            shaders::spirv(&name)
-                .ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))
-        };
-        Ok(Modules([
-            (vk::ShaderStageFlags::VERTEX, find("vert".into())?),
+/// The modules of a method's pipeline.
+fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Result<Vec<Module>> {
+    use vk::ShaderStageFlags as Stage;
+    let evaluation = format!("{}.tese", spacing.name());
+    let mut stages = match backend {
+        Backend::Tessellator => vec![
+            (Stage::VERTEX, format!("{method}.vert")),
+            (Stage::TESSELLATION_CONTROL, format!("{method}.tesc")),
             (
-                vk::ShaderStageFlags::TESSELLATION_CONTROL,
-                find("tesc".into())?,
+                Stage::TESSELLATION_EVALUATION,
+                format!("{method}.{evaluation}"),
             ),
-            (
-                vk::ShaderStageFlags::TESSELLATION_EVALUATION,
-                find(format!("{}.tese", spacing.name()))?,
-            ),
-            (vk::ShaderStageFlags::FRAGMENT, find("frag".into())?),
-        ]))
+        ],
+        Backend::Pattern => vec![(Stage::VERTEX, format!("{method}.pattern.vert"))],
+        Backend::Geometry => vec![
+            (Stage::VERTEX, "patches.vert".into()),
+            (Stage::GEOMETRY, format!("{method}.geom")),
+        ],
+    };
+    // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours).
+    if fill != Fill::Discard {
+        stages.push((Stage::FRAGMENT, format!("{method}.frag")));
     }
+    let found = stages.into_iter().map(|(stage, name)| {
+        let words = shaders::spirv(&name);
+        let words =
+            words.ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))?;
+        Ok((stage, words))
+    });
+    found.collect()
 }
 
 /// What a pipeline is made of, its shaders aside.
 struct PipelinePlan {
+    backend: Backend,
     control_points: u32,
     target: Target,
     fill: Fill,
@@ -142,13 +157,11 @@ impl PipelinePlan {
         device: &ash::Device,
         layout: &Layout,
         cache: vk::PipelineCache,
-        modules: &Modules,
+        modules: &[Module],
     ) -> Result<vk::Pipeline> {
         let mut made = Vec::new();
         let mut problem = None;
-        // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours).
-        let count = if self.fill == Fill::Discard { 3 } else { 4 };
-        for &(stage, words) in &modules.0[..count] {
+        for &(stage, words) in modules {
             let info = vk::ShaderModuleCreateInfo::default().code(words);
             // SAFETY: the words are a valid module; the tests validate every one.
             match unsafe { device.create_shader_module(&info, None) } {
@@ -187,8 +200,12 @@ impl PipelinePlan {
             })
             .collect();
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::PATCH_LIST);
+        let assembly =
+            vk::PipelineInputAssemblyStateCreateInfo::default().topology(match self.backend {
+                Backend::Tessellator => vk::PrimitiveTopology::PATCH_LIST,
+                Backend::Pattern => vk::PrimitiveTopology::TRIANGLE_LIST,
+                Backend::Geometry => vk::PrimitiveTopology::POINT_LIST,
+            });
         let tessellation = vk::PipelineTessellationStateCreateInfo::default()
             .patch_control_points(self.control_points);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
@@ -206,11 +223,10 @@ impl PipelinePlan {
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colour);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
-        let info = vk::GraphicsPipelineCreateInfo::default()
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertex_input)
             .input_assembly_state(&assembly)
-            .tessellation_state(&tessellation)
             .viewport_state(&viewport)
             .rasterization_state(&rasterization)
             .multisample_state(&multisample)
@@ -219,6 +235,9 @@ impl PipelinePlan {
             .dynamic_state(&dynamic)
             .layout(layout.pipeline())
             .render_pass(self.target.render_pass);
+        if self.backend == Backend::Tessellator {
+            info = info.tessellation_state(&tessellation);
+        }
         // SAFETY: everything that the info points to lives through the call and is of this device.
         let made = unsafe { device.create_graphics_pipelines(cache, &[info], None) };
         made.map(|pipelines| pipelines[0])

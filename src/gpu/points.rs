@@ -5,7 +5,6 @@ use ash::vk;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::gpu::layout::STAGES;
-use crate::gpu::ring::RING_STAGES;
 use crate::gpu::{Layout, TessellatedSurface, failed, shaders};
 
 /// The pipeline that computes points, the same for all methods.
@@ -62,11 +61,6 @@ impl PointPipeline {
     }
 }
 
-/// The stages that read points.
-const READERS: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
-    vk::PipelineStageFlags::VERTEX_SHADER.as_raw() | RING_STAGES.as_raw(),
-);
-
 impl TessellatedSurface {
     /// Records the computation of the points from the control vertices in [`position_buffer`](Self::position_buffer), with the same bits as
     /// [`write_positions`](Self::write_positions) has. Methods without such points record nothing.
@@ -88,7 +82,8 @@ impl TessellatedSurface {
         let Some(&set) = self.sets.first() else {
             return;
         };
-        let mut before = READERS | compute;
+        let readers = vk::PipelineStageFlags::VERTEX_SHADER | self.options.backend.stages();
+        let mut before = readers | compute;
         for step in self
             .prepared
             .points
@@ -110,7 +105,7 @@ impl TessellatedSurface {
             before = compute;
         }
         // SAFETY: as above.
-        unsafe { cmd_points_barrier(device, cmd, compute, READERS) };
+        unsafe { cmd_points_barrier(device, cmd, compute, readers) };
     }
 }
 

@@ -4,17 +4,22 @@ use ash::vk;
 use glam::Vec3;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocator;
+use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::Result;
+use crate::gpu::backend::Backend;
 use crate::gpu::batches::{Batch, Cut, batches};
 use crate::gpu::layout::BINDINGS;
 use crate::gpu::options::SurfaceOptions;
+use crate::gpu::patterns::Patterns;
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{Buffer, Layout, failed};
 use crate::mesh::Model;
-use crate::method::{Controls, Pass, Prepared};
-use crate::tessellation::Spacing;
+use crate::method::{Controls, DepthTags, Pass, Prepared};
+use crate::tessellation::{
+    Levels, Spacing, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
+};
 
 /// A prepared model in buffers of the device. It borrows nothing; the owner calls [`TessellatedSurface::destroy`].
 #[derive(Debug)]
@@ -23,6 +28,9 @@ pub struct TessellatedSurface {
     pub(super) options: SurfaceOptions,
     pub(super) workarounds: Vec<&'static Workaround>,
     pub(super) buffers: Buffers,
+    pub(super) patterns: Patterns,
+    /// By pass and patch, where depth tags are given; else empty.
+    pub(super) tagged: Vec<Vec<Levels>>,
     pub(super) sets: Vec<vk::DescriptorSet>,
     pool: vk::DescriptorPool,
 }
@@ -42,21 +50,24 @@ pub(super) struct Buffers {
     counters: usize,
     counted: usize,
     capture: usize,
-    /// A pass each: patches, controls, texture, slots, the method's tables.
+    /// A pass each: patches, controls, texture, draws, instances, the method's tables.
     passes: Vec<Vec<usize>>,
 }
 
-/// Where a pass's slots stand in [`Buffers::passes`].
-const SLOTS: usize = 3;
+/// Where a pass's draws stand in [`Buffers::passes`].
+const DRAWS: usize = 3;
+/// Where a pass's instances stand.
+const INSTANCES: usize = 4;
 
 impl TessellatedSurface {
     /// Makes the buffers and descriptor sets of a prepared model. Record [`cmd_upload`](Self::cmd_upload) before anything else.
     ///
     /// # Errors
-    /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch at `greatest_level`; Vulkan's own.
+    /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch at `greatest_level`, or the backend cannot draw it;
+    /// Vulkan's own.
     ///
     /// # Safety
-    /// `device` is live and has the features that [`Support`](super::Support) asks for; `allocator` and `layout` were made for it. All
+    /// `device` is live and has the features that [`Support`](super::Support) asks for, with [`Backend::Geometry`] also `geometryShader`; `allocator` and `layout` were made for it. All
     /// commands of this surface go to queues of one family: the buffers are `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
@@ -67,12 +78,15 @@ impl TessellatedSurface {
         workarounds: &[&'static Workaround],
         options: SurfaceOptions,
     ) -> Result<TessellatedSurface> {
+        options.backend.check(&prepared, options.greatest_level)?;
         let counters = counter_count(&prepared, options)?;
         let mut surface = TessellatedSurface {
             prepared,
             options,
             workarounds: workarounds.to_vec(),
             buffers: Buffers::default(),
+            patterns: Patterns::default(),
+            tagged: Vec::new(),
             sets: Vec::new(),
             pool: vk::DescriptorPool::null(),
         };
@@ -195,11 +209,17 @@ impl TessellatedSurface {
         &self.prepared
     }
 
+    /// How it uses the device.
+    pub fn options(&self) -> SurfaceOptions {
+        self.options
+    }
+
     /// The batches that a cut needs: each within the ring, and within the capture if there is one.
     ///
     /// # Errors
-    /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch.
+    /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch, or the level is beyond the backend.
     pub fn batches(&self, cut: Cut) -> Result<Vec<Batch>> {
+        self.options.backend.check(&self.prepared, cut.level)?;
         batches(&self.prepared, cut, self.options.bounds())
     }
 
@@ -252,24 +272,122 @@ impl TessellatedSurface {
         self.buffers.all[self.buffers.positions].raw()
     }
 
-    /// Writes the slots that the host gives at a cut.
+    /// Writes what the host decides about each patch at a cut: its slot in the ring, with depth tags (a depth for each control vertex) its
+    /// levels, and which refinement pattern it is drawn with. Tags lower levels; none is above that of the cut.
     ///
-    /// Needed before drawing with [`Slots::Host`](super::Slots::Host), whenever cut or batches change. No submitted command may still use this surface.
-    pub fn write_slots(&mut self, cut: Cut, batches: &[Batch]) {
+    /// Needed before drawing with [`Slots::Host`](super::Slots::Host), with [`Backend::Pattern`] or with tags, whenever cut, batches or tags
+    /// change. Without tags all patches have the level of the cut again.
+    ///
+    /// # Errors
+    /// Vulkan's own, when there is no memory for more patterns.
+    ///
+    /// # Panics
+    /// When the number of tags is not that of control vertices.
+    ///
+    /// # Safety
+    /// `device` and `allocator` made this surface, and no submitted command still uses it. `batches` are of this cut.
+    pub unsafe fn write_draws(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut Allocator,
+        cut: Cut,
+        tags: Option<&DepthTags>,
+        batches: &[Batch],
+    ) -> Result<()> {
+        self.tagged = tags.map_or(Vec::new(), |tags| self.tagged_levels(cut, tags));
+        self.patterns.clear();
         for batch in batches {
+            let cut = self.options.backend.cut(cut);
             let pass = &self.prepared.passes[batch.pass];
             let mut next = 0;
-            let slots: Vec<u32> = (batch.first..batch.end)
+            let draws: Vec<abi::PatchDraw> = (batch.first..batch.end)
                 .map(|patch| {
+                    let Levels { edges, inside, .. } = self.levels(cut, batch.pass, patch);
                     let slot = next;
                     next += cut.points(pass, patch as usize);
-                    slot
+                    abi::PatchDraw {
+                        slot,
+                        edges,
+                        inside,
+                    }
                 })
                 .collect();
-            let buffer = self.buffers.passes[batch.pass][SLOTS];
-            self.buffers.all[buffer]
-                .write(4 * u64::from(batch.first), bytemuck::cast_slice(&slots));
+            self.write_records(batch, DRAWS, &draws);
+            if self.options.backend == Backend::Pattern {
+                let mut patterns = std::mem::take(&mut self.patterns);
+                let instances =
+                    patterns.arrange(batch, |patch| self.levels(cut, batch.pass, patch));
+                self.patterns = patterns;
+                self.write_records(batch, INSTANCES, &instances);
+            }
         }
+        if self.options.backend != Backend::Pattern {
+            return Ok(());
+        }
+        // SAFETY: this function's contract.
+        unsafe { self.patterns.write(device, allocator) }
+    }
+
+    /// Writes a record a patch of a batch.
+    fn write_records<T: bytemuck::Pod>(&mut self, batch: &Batch, table: usize, records: &[T]) {
+        let buffer = self.buffers.passes[batch.pass][table];
+        let offset = u64::from(batch.first) * size_of::<T>() as u64;
+        self.buffers.all[buffer].write(offset, bytemuck::cast_slice(records));
+    }
+
+    /// The levels of a patch as it was last [written](Self::write_draws), or else at a cut.
+    pub fn levels(&self, cut: Cut, pass: usize, patch: u32) -> Levels {
+        match self.tagged.get(pass) {
+            Some(levels) => levels[patch as usize],
+            None => {
+                let cut = self.options.backend.cut(cut);
+                cut.levels(&self.prepared.passes[pass], patch as usize)
+            }
+        }
+    }
+
+    /// The vertices of a patch as it was last [written](Self::write_draws), or else at a cut.
+    pub fn vertices(&self, cut: Cut, pass: usize, patch: u32) -> u32 {
+        let levels = self.levels(cut, pass, patch);
+        match self.options.backend {
+            Backend::Tessellator => levels.vertices(cut.spacing),
+            Backend::Pattern | Backend::Geometry => lattice_vertices(&levels),
+        }
+    }
+
+    /// The triangles of a patch as it was last [written](Self::write_draws), or else at a cut: counter-clockwise in (u, v), as numbers of its
+    /// vertices `uv`, which may come in any order. Vertices that are not among them have no triangles.
+    pub fn triangles(&self, cut: Cut, pass: usize, patch: u32, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+        let levels = self.levels(cut, pass, patch);
+        if self.options.backend == Backend::Tessellator {
+            return triangulate(levels.domain, uv);
+        }
+        let segments = lattice_segments(&levels) as f32;
+        let place = |at: &[f32; 2]| at.map(|x| (x * segments) as u32);
+        let numbers: FxHashMap<[u32; 2], u32> = uv.iter().map(place).zip(0..).collect();
+        let numbered = |places: [[u32; 2]; 3]| {
+            let [a, b, c] = places.map(|place| numbers.get(&place).copied());
+            Some([a?, b?, c?])
+        };
+        pattern(&levels).into_iter().filter_map(numbered).collect()
+    }
+
+    /// The levels that depth tags give to all patches.
+    fn tagged_levels(&self, cut: Cut, tags: &DepthTags) -> Vec<Vec<Levels>> {
+        let backend = self.options.backend;
+        let cut = backend.cut(cut);
+        let sides: Vec<f32> = self.prepared.outline.depths(tags);
+        let level = |side: u32| backend.level_of(sides[side as usize]).min(cut.level);
+        let of_pass = |pass: &Pass| {
+            let patches = pass.patches.iter().zip(&pass.sides);
+            patches
+                .map(|(patch, sides)| {
+                    let edges = sides.map(level);
+                    levels_of_edges(pass.domain, patch, edges, cut.spacing, pass.max_level)
+                })
+                .collect()
+        };
+        self.prepared.passes.iter().map(of_pass).collect()
     }
 
     /// Destroys everything.
@@ -278,7 +396,10 @@ impl TessellatedSurface {
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
     pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
         // SAFETY: this function's contract. The sets go with their pool; a null pool is fine.
-        unsafe { device.destroy_descriptor_pool(self.pool, None) };
+        unsafe {
+            device.destroy_descriptor_pool(self.pool, None);
+            self.patterns.destroy(device, allocator);
+        }
         for buffer in self.buffers.all {
             // SAFETY: this function's contract.
             unsafe { buffer.destroy(device, allocator) };
@@ -297,13 +418,14 @@ impl Buffers {
             abi::BINDING_TEXTURE => tables[2],
             abi::BINDING_SCRATCH => self.ring,
             abi::BINDING_COUNTERS => self.counters,
-            abi::BINDING_SLOTS => tables[SLOTS],
+            abi::BINDING_DRAWS => tables[DRAWS],
+            abi::BINDING_INSTANCES => tables[INSTANCES],
             abi::BINDING_CAPTURE => self.capture,
             abi::BINDING_POINTS => self.points,
             abi::BINDING_POINT_ROWS => self.point_rows,
             abi::BINDING_POINT_TERMS => self.point_terms,
             table => *tables
-                .get((table - abi::BINDING_TABLES) as usize + SLOTS + 1)
+                .get((table - abi::BINDING_TABLES) as usize + INSTANCES + 1)
                 .unwrap_or(&tables[0]),
         };
         &self.all[number]
@@ -384,19 +506,21 @@ impl Maker<'_> {
     /// # Safety
     /// As [`Maker::buffer`].
     unsafe fn pass(&mut self, pass: &Pass) -> Result<Vec<usize>> {
-        let slots = 4 * pass.patches.len() as u64;
+        let patches = pass.patches.len();
+        let (storage, written) = (
+            vk::BufferUsageFlags::STORAGE_BUFFER,
+            MemoryLocation::CpuToGpu,
+        );
+        let draws = (size_of::<abi::PatchDraw>() * patches) as u64;
+        let instances = (size_of::<u32>() * patches) as u64;
         // SAFETY: this function's contract.
         unsafe {
             let mut tables = vec![
                 self.table("patches", bytemuck::cast_slice(&pass.patches))?,
                 self.table("controls", bytemuck::cast_slice(&pass.controls))?,
                 self.table("texture coordinates", bytemuck::cast_slice(&pass.texture))?,
-                self.buffer(
-                    "slots",
-                    slots,
-                    vk::BufferUsageFlags::STORAGE_BUFFER,
-                    MemoryLocation::CpuToGpu,
-                )?,
+                self.buffer("draws", draws, storage, written)?,
+                self.buffer("instances", instances, storage, written)?,
             ];
             for table in &pass.tables {
                 tables.push(self.table("method's table", bytemuck::cast_slice(table))?);

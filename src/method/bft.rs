@@ -6,11 +6,15 @@
 //! ring, positions and normals alike (section II-C; the normals are Alexa and Boubekeur's subdivision shading, from level 1 on). Between the points of the lattice
 //! vertices lie on a virtual mesh of the maximum level.
 //!
+//! Shading that begins earlier carries the control mesh's normals to the refined mesh. Begun later, it has tables of its own, over the vertices of
+//! the mesh refined once more; the limit's normals have tables of tangents (sections II-B and II-C name all three).
+//!
 //! So that both sides of an edge have the same bits, an edge is evaluated on the first face that has it, whoever asks, and so is a vertex.
 //! The paper computes each edge twice and counts on equal weights.
 
 mod configuration;
 mod covered;
+mod entries;
 mod lattice;
 mod pack;
 mod table;
@@ -19,16 +23,15 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::abi::{self, TableFace, TablePlace};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
-use crate::method::points::{Points, Row};
-use crate::method::surface::{Controls, SurfacePoint, normalized};
+use crate::method::surface::{Controls, Surface, SurfacePoint, normalized};
 use crate::method::triangles::corner_weights;
-use crate::method::vertices;
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
-use crate::plan::PlanOptions;
-use crate::subdivision::{Blend, Mask, Refinement, refine_all, scheme_rings};
+use crate::method::{
+    Contract, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals, TableOptions,
+};
+use crate::subdivision::{refine_all, scheme_rings};
 use crate::tessellation::Domain;
 
 use configuration::{Configuration, configuration};
@@ -52,54 +55,49 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    uses_tables: true,
     covers: covered::check,
     prepare,
 };
 
-/// The greatest level of the tables: a patch has 2^level segments an edge, half of what its face has.
-const GREATEST_TABLE_LEVEL: u32 = 6;
-
-fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
-    let level = table_level(options);
+fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
+    let options = options.tables.check()?;
     let scheme = model.mesh().options().scheme;
-    let Refinement {
-        topology, masks, ..
-    } = refine_all(model.topology(), scheme);
-    let points = points(&topology, &masks);
-    let tables = Tables::new(topology, scheme, level);
-    let [quads, triangles] = pack::passes(model, &tables, options.max_level.min(level + 1));
+    let once = refine_all(model.topology(), scheme);
+    let from = options.normals;
+    let twice = (from == TableNormals::Shading(2)).then(|| refine_all(&once.topology, scheme));
+    let points = entries::points(model.topology(), &once, twice.as_ref(), from);
+    let tables = Tables::new(
+        once.topology,
+        twice.map(|twice| twice.topology),
+        scheme,
+        options,
+    );
+    let [quads, triangles] = pack::passes(model, &tables);
+    check_size(&quads)?;
+    check_size(&triangles)?;
     Ok(Prepared {
         points,
         ..Prepared::of([quads, triangles])
     })
 }
 
-/// The level of the tables is one less than that of plans, since a patch is half as long as its face: 5 by default, as in section II-A.
-fn table_level(options: PlanOptions) -> u32 {
-    let level = options.max_level.saturating_sub(1);
-    level.clamp(1, GREATEST_TABLE_LEVEL)
-}
+/// The bytes of a buffer that every device can bind (Vulkan spec, "Required Limits", `maxStorageBufferRange`).
+const MOST_BYTES: usize = 1 << 27;
 
-/// The "computational entries" of section II-B: the refined vertices over the control vertices, and the rings around them that give normals.
-fn points(refined: &Topology, masks: &[Mask]) -> Points {
-    let mut points = Points::default();
-    points.begin(abi::POINTS_BLEND, 0);
-    for mask in masks {
-        points.push(Row::Blend(&ascending(mask)));
+/// Refuses tables of weights that a device may not be able to bind: many vertices of high valence, at a high level, make them so large.
+fn check_size(pass: &Pass) -> Result<()> {
+    let bytes = pass.tables.first().map_or(0, |weights| 4 * weights.len());
+    if bytes <= MOST_BYTES {
+        return Ok(());
     }
-    points.begin(abi::POINTS_RING, 0);
-    for vertex in 0..refined.vertex_count() as u32 {
-        vertices::push_ring(&mut points, refined, vertex);
-    }
-    points
-}
-
-/// The mask with each vertex once, and the greatest weight last: sums of hundreds of terms, at vertices of high valence, keep their last places
-/// so.
-fn ascending(mask: &Mask) -> Mask {
-    let mut merged = Mask::blend(&[(0, 1.0)], std::slice::from_ref(mask));
-    merged.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    merged
+    Err(Error::Option {
+        option: "--table-level",
+        problem: format!(
+            "the tables take {bytes} bytes, and devices may bind {MOST_BYTES} at most"
+        ),
+        remedy: "give a lower level, or shading instead of geometric normals".into(),
+    })
 }
 
 /// The refined mesh, the configuration of each face that is drawn, and a table for each that differs.
@@ -111,33 +109,74 @@ struct Tables {
     /// By face, the number of its table.
     kinds: Vec<u32>,
     weights: Vec<Vec<f32>>,
+    normals: Normals,
+}
+
+/// What normals are sums of.
+enum Normals {
+    /// What positions are.
+    Same,
+    /// Tables of tangents, by kind.
+    Tangents(Vec<Vec<f32>>),
+    /// Vertices of the mesh refined once more, by face, and tables of weights, by kind.
+    Refined(Vec<Option<Configuration>>, Vec<Vec<f32>>),
 }
 
 impl Tables {
-    fn new(topology: Topology, scheme: Scheme, level: u32) -> Tables {
+    /// With the mesh refined once `more` if that is what normals come from.
+    fn new(
+        topology: Topology,
+        more: Option<Topology>,
+        scheme: Scheme,
+        options: TableOptions,
+    ) -> Tables {
+        let TableOptions { level, normals } = options;
+        let rings = scheme_rings(scheme);
         let configurations: Vec<Option<Configuration>> = (0..topology.face_count() as u32)
             .into_par_iter()
             .map(|face| {
                 let drawn = !topology.is_hole(face);
-                drawn.then(|| configuration(&topology, face, scheme_rings(scheme)))
+                drawn.then(|| configuration(&topology, face, rings))
             })
             .collect();
         let (kinds, first) = kinds(&configurations);
-        let lattice = |face: u32| Lattice::new(domain(&topology, face), level);
-        let weights = first
-            .par_iter()
-            .filter_map(|&face| Some((face, configurations[face as usize].as_ref()?)))
-            .map(|(face, found)| table::weights(&topology, scheme, found, lattice(face)))
-            .collect();
+        let each = |mesh: &Topology, found: &[Option<Configuration>], table: Table| {
+            first
+                .par_iter()
+                .filter_map(|&face| {
+                    let lattice = Lattice::new(domain(&topology, face), level);
+                    let found = found[face as usize].as_ref()?;
+                    Some(table(mesh, scheme, found, lattice))
+                })
+                .collect::<Vec<_>>()
+        };
+        let normals = match (normals, more) {
+            (TableNormals::Geometric, _) => {
+                Normals::Tangents(each(&topology, &configurations, table::tangents))
+            }
+            (_, None) => Normals::Same,
+            (_, Some(more)) => {
+                let found: Vec<Option<Configuration>> = configurations
+                    .par_iter()
+                    .map(|found| Some(found.as_ref()?.refined(&more, rings)))
+                    .collect();
+                let weights = each(&more, &found, table::weights);
+                Normals::Refined(found, weights)
+            }
+        };
         Tables {
+            weights: each(&topology, &configurations, table::weights),
+            normals,
             configurations,
             kinds,
-            weights,
             level,
             topology,
         }
     }
 }
+
+/// Makes a table.
+type Table = fn(&Topology, Scheme, &Configuration, Lattice) -> Vec<f32>;
 
 /// The number of each face's table, and the first face of each. Holes have whichever.
 fn kinds(configurations: &[Option<Configuration>]) -> (Vec<u32>, Vec<u32>) {
@@ -224,32 +263,73 @@ fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
             (face, [(side, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)])
         }
     };
-    sum(pass, given, weights, faces[face as usize], shares)
-}
-
-/// The sum over the face's points (equation 1), from the last to the first: the face's own vertices weigh most.
-fn sum(
-    pass: &Pass,
-    given: &Controls,
-    weights: &[f32],
-    face: TableFace,
-    shares: Shares,
-) -> SurfacePoint {
-    let (mut position, mut normal) = (Vec3::ZERO, Vec3::ZERO);
-    for i in (0..face.count).rev() {
-        let weight = shares.iter().fold(0.0, |sum, &(row, share)| {
-            if share == 0.0 {
-                return sum;
-            }
-            sum + share * weights[(face.weights + row * face.count + i) as usize]
-        });
-        let point = given.points[pass.controls[(face.controls + i) as usize] as usize];
-        position += weight * Vec3::from(point.position);
-        normal += weight * Vec3::from(point.normal);
-    }
+    let sums = Sums {
+        pass,
+        points: &given.points,
+        weights,
+    };
+    let own = faces[face as usize];
+    let (position, shaded) = sums.weighted(own, shares);
+    let other = faces[(own.normals & !abi::TABLE_TANGENTS) as usize];
+    let normal = if own.normals == face {
+        shaded
+    } else if own.normals & abi::TABLE_TANGENTS != 0 {
+        sums.limit_normal(other, shares)
+    } else {
+        sums.weighted(other, shares).1
+    };
     SurfacePoint {
         position,
         normal: normalized(normal) + Vec3::ZERO,
+    }
+}
+
+/// What is summed.
+struct Sums<'a> {
+    pass: &'a Pass,
+    points: &'a [abi::Point],
+    weights: &'a [f32],
+}
+
+impl Sums<'_> {
+    fn point(&self, face: TableFace, i: u32) -> abi::Point {
+        self.points[self.pass.controls[(face.controls + i) as usize] as usize]
+    }
+
+    /// Position and normal as sums over the face's points (equation 1), from the last to the first: the face's own vertices weigh most. The same
+    /// weights for normals are subdivision shading (section II-C).
+    fn weighted(&self, face: TableFace, shares: Shares) -> (Vec3, Vec3) {
+        let (mut position, mut normal) = (Vec3::ZERO, Vec3::ZERO);
+        for i in (0..face.count).rev() {
+            let weight = shares.iter().fold(0.0, |sum, &(row, share)| {
+                if share == 0.0 {
+                    return sum;
+                }
+                sum + share * self.weights[(face.weights + row * face.count + i) as usize]
+            });
+            let point = self.point(face, i);
+            position += weight * Vec3::from(point.position);
+            normal += weight * Vec3::from(point.normal);
+        }
+        (position, normal)
+    }
+
+    /// The normal from tangents (section II-C: "tangent BFTs") at each point of the lattice, linear between. Their weights sum to zero, so they
+    /// are sums of differences, which lose less.
+    fn limit_normal(&self, face: TableFace, shares: Shares) -> Vec3 {
+        let origin = Vec3::from(self.point(face, 0).position);
+        let of_row = |row: u32| {
+            let first = face.weights + 2 * row * face.count;
+            let mut tangents = Surface::default();
+            for i in (0..face.count).rev() {
+                let spoke = Vec3::from(self.point(face, i).position) - origin;
+                tangents.du += self.weights[(first + i) as usize] * spoke;
+                tangents.dv += self.weights[(first + face.count + i) as usize] * spoke;
+            }
+            tangents.normal()
+        };
+        let used = shares.iter().filter(|(_, share)| *share != 0.0);
+        used.fold(Vec3::ZERO, |sum, &(row, share)| sum + share * of_row(row))
     }
 }
 

@@ -10,8 +10,7 @@ use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
-use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces};
-use crate::plan::PlanOptions;
+use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
 
 /// The row of the table.
@@ -27,11 +26,12 @@ pub const METHOD: Method = Method {
         interpolates: true,
         watertight: false,
     },
+    uses_tables: false,
     covers: method::every_mesh,
     prepare,
 };
 
-fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
     let topology = model.topology();
     let mut quads = Pass::new("flat", Domain::Quads, 4, quad);
     let mut triangles = Pass::new("flat_triangles", Domain::Triangles, 3, triangle);

@@ -47,6 +47,8 @@
 mod bft;
 mod displacement;
 mod flat;
+mod options;
+mod outline;
 mod patches;
 mod phong;
 mod pn;
@@ -55,6 +57,7 @@ mod qas;
 mod quads;
 mod quadtree;
 mod surface;
+mod tags;
 mod triangles;
 mod vertices;
 
@@ -63,13 +66,15 @@ use glam::Vec2;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
-use crate::plan::PlanOptions;
 use crate::tessellation::Domain;
 
 pub use displacement::Displacement;
+pub use options::{MethodOptions, TableNormals, TableOptions};
+pub use outline::Outline;
 pub use points::Points;
 pub use quadtree::PlanStatistics;
 pub use surface::{Controls, SurfacePoint};
+pub use tags::DepthTags;
 
 /// Which surface a method draws, and how exactly: distances are over the diagonal of the bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,20 +121,27 @@ pub struct Method {
     pub domains: &'static [Domain],
     /// What it promises.
     pub contract: Contract,
+    /// Whether it goes by [`MethodOptions::tables`].
+    pub uses_tables: bool,
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
-    prepare: fn(&Model, PlanOptions) -> Result<Prepared>,
+    prepare: fn(&Model, MethodOptions) -> Result<Prepared>,
 }
 
 impl Method {
-    /// Prepares a model.
+    /// Prepares a model. Options of other methods do not count.
     ///
     /// # Errors
-    /// As [`Method::check_model`].
-    pub fn prepare(&self, model: &Model, options: PlanOptions) -> Result<Prepared> {
+    /// As [`Method::check_model`]; [`Error::Option`] names an option that is out of range.
+    pub fn prepare(&self, model: &Model, options: impl Into<MethodOptions>) -> Result<Prepared> {
         self.check_model(model)?;
-        (self.prepare)(model, options)
+        let mut prepared = (self.prepare)(model, options.into())?;
+        prepared.outline = Outline::new(model.topology());
+        for pass in &mut prepared.passes {
+            pass.sides = outline::sides_of(model, &pass.patches);
+        }
+        Ok(prepared)
     }
 
     /// Whether the method can draw a model, without preparing it.
@@ -216,6 +228,8 @@ pub struct Prepared {
     pub passes: Vec<Pass>,
     /// What is computed from the control vertices before patches are drawn; nothing for most methods.
     pub points: Points,
+    /// The edges and faces of the control mesh, which [`Pass::sides`] count.
+    pub outline: Outline,
     /// What is known about the plans, when the method has any.
     pub plans: Option<PlanStatistics>,
 }
@@ -233,6 +247,9 @@ pub struct Pass {
     pub patches: Vec<abi::Patch>,
     /// The numbers of control vertices that the patches point into.
     pub controls: Vec<u32>,
+    /// The side of the [`Outline`] to which each patch's edge from corner i to corner i + 1 belongs; a triangle's last one twice. Filled in by
+    /// [`Method::prepare`].
+    pub sides: Vec<[u32; 4]>,
     /// Texture coordinates of each patch's four corners.
     pub texture: Vec<[[f32; 2]; 4]>,
     /// The method's own tables, as words, from `BINDING_TABLES` on.
@@ -276,6 +293,7 @@ impl Pass {
             control_points,
             patches: Vec::new(),
             controls: Vec::new(),
+            sides: Vec::new(),
             texture: Vec::new(),
             tables: Vec::new(),
             scratch_points: Vec::new(),
@@ -326,7 +344,10 @@ pub fn to_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
     let [u, v] = turned_back(patch, uv);
     match child(patch) {
         Child::Whole => [u, v],
-        Child::Corner([x, y]) => [0.5 * (u + x), 0.5 * (v + y)],
+        Child::Corner(corner) => {
+            let [x, y] = corner_uv(patch, corner);
+            [0.5 * (u + x), 0.5 * (v + y)]
+        }
         Child::Middle => [0.5 * (1.0 - u), 0.5 * (1.0 - v)],
     }
 }
@@ -336,7 +357,10 @@ pub fn from_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
     let [u, v] = uv;
     let own = match child(patch) {
         Child::Whole => [u, v],
-        Child::Corner([x, y]) => [2.0 * u - x, 2.0 * v - y],
+        Child::Corner(corner) => {
+            let [x, y] = corner_uv(patch, corner);
+            [2.0 * u - x, 2.0 * v - y]
+        }
         Child::Middle => [1.0 - 2.0 * u, 1.0 - 2.0 * v],
     };
     turned(patch, own)
@@ -345,24 +369,30 @@ pub fn from_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
 /// Which part of its ptex face a patch is.
 enum Child {
     Whole,
-    /// At the corner of this (u, v).
-    Corner([f32; 2]),
+    /// At this corner.
+    Corner(usize),
     /// In the middle of a triangle, with its corners opposite to the triangle's.
     Middle,
 }
 
 fn child(patch: &abi::Patch) -> Child {
-    const CORNERS: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    const OF_TRIANGLE: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
         0 => Child::Whole,
         number if number < abi::CHILD_OF_TRIANGLE => {
-            Child::Corner(CORNERS[(number - abi::CHILD_OF_QUAD) as usize])
+            Child::Corner((number - abi::CHILD_OF_QUAD) as usize)
         }
-        number => match OF_TRIANGLE.get((number - abi::CHILD_OF_TRIANGLE) as usize) {
-            Some(&corner) => Child::Corner(corner),
-            None => Child::Middle,
+        number => match number - abi::CHILD_OF_TRIANGLE {
+            corner @ 0..3 => Child::Corner(corner as usize),
+            _ => Child::Middle,
         },
+    }
+}
+
+/// Where a corner of a patch's ptex face is.
+fn corner_uv(patch: &abi::Patch, corner: usize) -> [f32; 2] {
+    match turn(patch) {
+        (_, true) => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]][corner],
+        (_, false) => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][corner],
     }
 }
 

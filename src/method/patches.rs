@@ -55,7 +55,7 @@ pub fn patch(model: &Model, part: Part, turn: u32) -> abi::Patch {
     } else if vertices.len() == 4 {
         let corners: [u32; 4] = std::array::from_fn(|i| (turn + i as u32) % 4);
         let edge = |corner: u32| topology.face_edges(part.face)[corner as usize];
-        let even = (0..4).filter(|&i| touches_n_gon(model, edge(corners[i])));
+        let even = (0..4).filter(|&i| touches_parts(model, edge(corners[i])));
         let even: u32 = even.map(|i| abi::PATCH_EVEN_EDGE << i).sum();
         let valences = corners.map(|corner| topology.vertex_edges(vertices[corner as usize]).len());
         (even | turn << abi::PATCH_TURN_SHIFT, valences)
@@ -72,8 +72,8 @@ pub fn patch(model: &Model, part: Part, turn: u32) -> abi::Patch {
     }
 }
 
-/// Whether a face at the edge is drawn in parts.
-fn touches_n_gon(model: &Model, edge: u32) -> bool {
+/// Whether a face at an edge is drawn in parts, each with half of its edges.
+fn touches_parts(model: &Model, edge: u32) -> bool {
     let (topology, scheme) = (model.topology(), model.mesh().options().scheme);
     let mut faces = topology.edge_faces(edge).iter();
     faces.any(|&face| !scheme.is_whole(topology.face(face).len()) && !topology.is_hole(face))

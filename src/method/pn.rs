@@ -11,8 +11,7 @@ use crate::method::quads::{quad_weights, sum_of_four};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{corner_weights, sum_of_three};
 use crate::method::vertices::{self, control_points};
-use crate::method::{Contract, Method, Pass, Prepared, Reproduces};
-use crate::plan::PlanOptions;
+use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
 
 /// The row of the table.
@@ -33,11 +32,12 @@ pub const METHOD: Method = Method {
         interpolates: true,
         watertight: true,
     },
+    uses_tables: false,
     covers: vertices::whole_faces,
     prepare,
 };
 
-fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
     let quads = Pass::new("pn_quads", Domain::Quads, 1, quad);
     let triangles = Pass::new("pn", Domain::Triangles, 1, triangle);
     Ok(vertices::by_vertices(model, [quads, triangles]))

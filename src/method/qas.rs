@@ -15,8 +15,7 @@ use crate::mesh::{Model, Scheme};
 use crate::method::surface::{Controls, SurfacePoint, normalized};
 use crate::method::triangles::{corner_weights, sum_of_three};
 use crate::method::vertices::{self, control_points};
-use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces, patches};
-use crate::plan::PlanOptions;
+use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces, patches};
 use crate::tessellation::Domain;
 
 use hexagons::Hexagons;
@@ -34,11 +33,12 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    uses_tables: false,
     covers: method::every_mesh,
     prepare,
 };
 
-fn prepare(model: &Model, _options: PlanOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
     let hexagons = Hexagons::new(model);
     let mut pass = Pass::new("qas", Domain::Triangles, 1, twin);
     for part in patches::parts(model) {

@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::{self, Contract, Method, Pass, Prepared, Reproduces};
+use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
@@ -36,6 +36,7 @@ pub const METHOD: Method = Method {
         interpolates: false,
         watertight: true,
     },
+    uses_tables: false,
     covers: method::every_mesh,
     prepare,
 };
@@ -81,8 +82,8 @@ enum Surroundings {
     Irregular(Part, Ring),
 }
 
-fn prepare(model: &Model, options: PlanOptions) -> Result<Prepared> {
-    let options = options.check()?;
+fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
+    let options = options.plans.check()?;
     let started = Instant::now();
     let topology = model.topology();
     let found: Vec<Surroundings> = patches::parts(model)

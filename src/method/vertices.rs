@@ -77,34 +77,34 @@ fn vertex_normals(topology: &Topology) -> Points {
     }
     points.begin(abi::POINTS_RING, 0);
     for vertex in vertices {
-        push_ring(&mut points, topology, vertex);
+        push_ring(&mut points, topology, vertex, 0);
     }
     points
 }
 
 /// Adds the ring of faces around a vertex. Where several fans meet, all follow one another with the vertex itself between them: faces that
-/// have it twice have no area.
-pub fn push_ring(points: &mut Points, topology: &Topology, vertex: u32) {
+/// have it twice have no area. `first` is the point of vertex 0.
+pub fn push_ring(points: &mut Points, topology: &Topology, vertex: u32, first: u32) {
     let fans = fans(topology, vertex);
-    let end = |&edge: &u32| topology.edge(edge).other(vertex);
+    let end = |&edge: &u32| first + topology.edge(edge).other(vertex);
+    let middle = first + vertex;
     if let [fan] = &fans[..] {
         let ends: Vec<u32> = fan.edges.iter().map(end).collect();
-        let (middle, open) = (vertex, !fan.closed);
         return points.push(Row::Ring {
             middle,
             ends: &ends,
-            open,
+            open: !fan.closed,
         });
     }
     let mut ends = Vec::new();
     for fan in &fans {
         ends.extend(fan.edges.iter().map(end));
         ends.extend(fan.edges.first().filter(|_| fan.closed).map(end));
-        ends.push(vertex);
+        ends.push(middle);
     }
     let open = !ends.is_empty();
     points.push(Row::Ring {
-        middle: vertex,
+        middle,
         ends: &ends,
         open,
     });

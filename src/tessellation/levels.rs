@@ -85,9 +85,6 @@ pub struct Levels {
 }
 
 /// The levels of a patch when quads have `level`, from the spacing's least to 2^`max_level` and at most 64.
-///
-/// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
-/// fractional-even (Brainerd et al. 2016, section 7.2).
 pub fn levels(
     domain: Domain,
     patch: &abi::Patch,
@@ -95,23 +92,43 @@ pub fn levels(
     spacing: Spacing,
     max_level: u32,
 ) -> Levels {
-    let level = spacing.clamp(level, max_level);
-    let half = match spacing {
+    levels_of_edges(domain, patch, [level; 4], spacing, max_level)
+}
+
+/// The levels of a patch whose edges from corner i to corner i + 1 belong to edges of quads of the levels `edges`, from the spacing's least to
+/// 2^`max_level` and at most 64; of a triangle the last counts twice.
+///
+/// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
+/// fractional-even (Brainerd et al. 2016, section 7.2).
+pub fn levels_of_edges(
+    domain: Domain,
+    patch: &abi::Patch,
+    edges: [f32; 4],
+    spacing: Spacing,
+    max_level: u32,
+) -> Levels {
+    let edges = edges.map(|level| spacing.clamp(level, max_level));
+    let half = |level: f32| match spacing {
         Spacing::Equal => (level * 0.5).ceil(),
         Spacing::FractionalEven => 2.0 * (level * 0.25).ceil(),
     };
+    let inside = edges.into_iter().fold(0.0, f32::max);
     if patch.flags & abi::PATCH_HALF != 0 {
         return Levels {
             domain,
-            edges: [half; 4],
-            inside: half,
+            edges: edges.map(half),
+            inside: half(inside),
         };
     }
-    let even = |edge: u32| patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
+    let even = |edge: usize| patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
+    let level = |edge: usize| match edges[edge] {
+        level if even(edge) => 2.0 * half(level),
+        level => level,
+    };
     Levels {
         domain,
-        edges: [0, 1, 2, 3].map(|edge| if even(edge) { 2.0 * half } else { level }),
-        inside: level,
+        edges: [0, 1, 2, 3].map(level),
+        inside,
     }
 }
 

@@ -6,12 +6,12 @@ use std::collections::HashMap;
 use ash::vk;
 use hullform::abi::{self, Captured};
 use hullform::gpu::{
-    Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, SurfaceOptions, Target,
+    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, SurfaceOptions, Target,
     TessellatedSurface, View, Workaround, ring,
 };
 use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Prepared, method};
+use hullform::method::{DepthTags, Displacement, Prepared, method};
 use hullform::plan::PlanOptions;
 use hullform::tessellation::Spacing;
 use hullform::{Error, Result};
@@ -19,8 +19,8 @@ use hullform::{Error, Result};
 /// The side of the picture that everything is drawn into.
 pub const SIDE: u32 = 64;
 
-/// What pipelines depend on here: the shaders of the passes, spacing, and what becomes of the triangles.
-type PipelineKey = (Vec<&'static str>, Spacing, &'static str);
+/// What pipelines depend on here: the shaders of the passes, who cuts, spacing, and what becomes of the triangles.
+type PipelineKey = (Vec<&'static str>, Backend, Spacing, &'static str);
 
 /// A validated device with all that surfaces share. [`Gpu::finish`] ends it.
 pub struct Gpu {
@@ -84,6 +84,7 @@ impl Gpu {
             options,
             reach: reach(model),
             displacement: Displacement::default(),
+            tags: None,
             surface: Some(surface?),
         };
         self.device.submit(|cmd| {
@@ -125,6 +126,7 @@ impl Gpu {
     fn with_pipelines<T>(
         &self,
         prepared: &Prepared,
+        backend: Backend,
         spacing: Spacing,
         fill: Fill,
         use_them: impl FnOnce(&Pipelines) -> T,
@@ -136,26 +138,29 @@ impl Gpu {
             Fill::Discard => "discard",
         };
         let mut all = self.pipelines.borrow_mut();
-        let pipelines = all.entry((shaders, spacing, fill_name)).or_insert_with(|| {
-            let target = Target {
-                render_pass: self.target().render_pass(),
-                samples: self.target().samples(),
-            };
-            let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
-            // SAFETY: all of one live device.
-            let built = unsafe {
-                Pipelines::new(
-                    device,
-                    self.layout(),
-                    cache,
-                    prepared,
-                    target,
-                    spacing,
-                    fill,
-                )
-            };
-            built.expect("the shipped modules make pipelines")
-        });
+        let pipelines = all
+            .entry((shaders, backend, spacing, fill_name))
+            .or_insert_with(|| {
+                let target = Target {
+                    render_pass: self.target().render_pass(),
+                    samples: self.target().samples(),
+                };
+                let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
+                // SAFETY: all of one live device.
+                let built = unsafe {
+                    Pipelines::new(
+                        device,
+                        self.layout(),
+                        cache,
+                        prepared,
+                        target,
+                        backend,
+                        spacing,
+                        fill,
+                    )
+                };
+                built.expect("the shipped modules make pipelines")
+            });
         use_them(pipelines)
     }
 }
@@ -176,6 +181,8 @@ pub struct Loaded<'a> {
     options: SurfaceOptions,
     reach: f32,
     pub displacement: Displacement,
+    /// A depth for each control vertex, where levels go by them.
+    pub tags: Option<DepthTags>,
     surface: Option<TessellatedSurface>,
 }
 
@@ -229,16 +236,20 @@ impl Loaded<'_> {
         unsafe { pipeline.destroy(device) };
     }
 
-    /// Lets the host give slots, as [`draw`](Self::draw) needs them when they are the host's.
-    pub fn write_slots(&mut self, cut: Cut, batches: &[Batch]) {
+    /// Lets the host decide about patches, as [`draw`](Self::draw) needs it when slots are the host's, patterns are drawn, or there are tags.
+    pub fn write_draws(&mut self, cut: Cut, batches: &[Batch]) {
+        let device = &self.gpu.device;
+        let (allocator, tags) = (&mut device.allocator(), self.tags.as_ref());
         let surface = self.surface.as_mut().expect("there from load to drop");
-        surface.write_slots(cut, batches);
+        // SAFETY: device and allocator made the surface; every submission has been waited for.
+        unsafe { surface.write_draws(device.raw(), allocator, cut, tags, batches) }
+            .expect("there is memory for patterns");
     }
 
     /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
     pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
         let batches = self.surface().batches(cut)?;
-        self.write_slots(cut, &batches);
+        self.write_draws(cut, &batches);
         let mut all = Frame {
             passes: vec![Vec::new(); self.prepared().passes.len()],
             ..Default::default()
@@ -283,27 +294,33 @@ impl Loaded<'_> {
         let query = counts
             .then(|| StatisticsQuery::new(&gpu.device))
             .transpose()?;
-        gpu.with_pipelines(self.prepared(), cut.spacing, fill, |pipelines| {
-            // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-            gpu.device.submit(|cmd| unsafe {
-                self.surface().cmd_prepare(device, cmd);
-                if let Some(query) = &query {
-                    query.cmd_reset(cmd);
-                }
-                gpu.target().begin(cmd, [0.0; 4]);
-                if let Some(query) = &query {
-                    query.cmd_begin(cmd);
-                }
-                self.cmd_draws(cmd, pipelines, cut, batches);
-                if let Some(query) = &query {
-                    query.cmd_end(cmd);
-                }
-                gpu.target().end(cmd);
-                self.surface().cmd_read_back(device, cmd);
-                gpu.target().cmd_copy_to_host(cmd);
-                Ok(())
-            })
-        })?;
+        gpu.with_pipelines(
+            self.prepared(),
+            self.options.backend,
+            cut.spacing,
+            fill,
+            |pipelines| {
+                // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+                gpu.device.submit(|cmd| unsafe {
+                    self.surface().cmd_prepare(device, cmd);
+                    if let Some(query) = &query {
+                        query.cmd_reset(cmd);
+                    }
+                    gpu.target().begin(cmd, [0.0; 4]);
+                    if let Some(query) = &query {
+                        query.cmd_begin(cmd);
+                    }
+                    self.cmd_draws(cmd, pipelines, cut, batches);
+                    if let Some(query) = &query {
+                        query.cmd_end(cmd);
+                    }
+                    gpu.target().end(cmd);
+                    self.surface().cmd_read_back(device, cmd);
+                    gpu.target().cmd_copy_to_host(cmd);
+                    Ok(())
+                })
+            },
+        )?;
         Ok(Frame {
             passes: vec![self.captured()],
             counters: self.surface().counters(),

@@ -215,7 +215,7 @@ fn patches_without_room_are_counted_and_left_out() {
             options.slots = slots;
             options.ring_bytes = 10 * smallest_ring(prepared, cut) + 160;
         });
-        tight.write_slots(cut, &all);
+        tight.write_draws(cut, &all);
         let frame = tight.draw(cut, Fill::Discard, &all).expect("it is drawn");
         let there = whole_patches(&frame.passes[0], &reference.passes[0]);
         assert_eq!(there.len(), 10, "{slots:?}: as many as there is room for");

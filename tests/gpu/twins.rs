@@ -2,11 +2,11 @@
 
 use hullform::gpu::{Cut, Fill};
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Method, Reproduces};
+use hullform::method::{METHODS, Method, MethodOptions, Reproduces, TableNormals, TableOptions};
 use hullform::tessellation::Spacing;
 
 use crate::common;
-use crate::common::gpu::{Frame, Gpu, SPACINGS, capturing, cut, prepare, vertices};
+use crate::common::gpu::{Frame, Gpu, SPACINGS, capturing, cut, vertices};
 use crate::precision::{Worst, from_truth, from_twin};
 use crate::shapes;
 
@@ -16,9 +16,22 @@ fn each_cut(
     model: &Model,
     method: &Method,
     cuts: &[Cut],
+    look: impl FnMut(Cut, &hullform::method::Prepared, &Frame),
+) {
+    each_cut_with(gpu, model, method, MethodOptions::default(), cuts, look);
+}
+
+/// The same of a model that is prepared with some options.
+fn each_cut_with(
+    gpu: &Gpu,
+    model: &Model,
+    method: &Method,
+    options: MethodOptions,
+    cuts: &[Cut],
     mut look: impl FnMut(Cut, &hullform::method::Prepared, &Frame),
 ) {
-    let prepared = prepare(model, method.name);
+    let prepared = method.prepare(model, options);
+    let prepared = prepared.expect("every sound mesh can be prepared");
     let options = capturing(&prepared, cuts);
     let workarounds = &gpu.device.info().workarounds;
     let mut loaded = gpu
@@ -72,6 +85,47 @@ fn captured_vertices_are_those_of_the_twins() {
                 worst.take(from_twin(&model, prepared, frame, step));
             });
             assert_near(&format!("{name} {}", method.name), worst, 1e-6, 0.1);
+        }
+    }
+    gpu.finish();
+}
+
+#[test]
+fn tables_with_every_option_are_those_of_the_twins() {
+    let Some(gpu) = Gpu::open() else { return };
+    let shading = TableNormals::Shading;
+    let all = [
+        (1, shading(1)),
+        (6, shading(1)),
+        (3, shading(0)),
+        (3, shading(2)),
+        (3, TableNormals::Geometric),
+    ];
+    let cuts = [cut(8.0, Spacing::Equal), cut(5.0, Spacing::FractionalEven)];
+    let quads = ("builtin:ngons".into(), shapes::built_in("ngons"));
+    // Without those whose tables take long to make.
+    let shapes = shapes::triangular()
+        .into_iter()
+        .filter(|(_, model)| model.mesh().face_count() < 300);
+    for (name, model) in shapes.chain([quads]) {
+        for method in able(&model).filter(|method| method.uses_tables) {
+            for (level, normals) in all {
+                let options = TableOptions { level, normals }.into();
+                let mut worst = Worst::default();
+                each_cut_with(
+                    &gpu,
+                    &model,
+                    method,
+                    options,
+                    &cuts,
+                    |cut, prepared, frame| {
+                        let step = ((vertices(prepared, cut) / 1000) | 1) as usize;
+                        worst.take(from_twin(&model, prepared, frame, step));
+                    },
+                );
+                let what = format!("{name} {} {level} {normals:?}", method.name);
+                assert_near(&what, worst, 1e-6, 0.1);
+            }
         }
     }
     gpu.finish();

@@ -99,6 +99,11 @@ impl View {
     pub fn clip_from_model(&self) -> Mat4 {
         self.clip_from_eye * self.eye_from_model
     }
+
+    /// The eye in model space.
+    pub fn eye(&self) -> Vec3 {
+        self.eye_from_model.inverse().transform_point3(Vec3::ZERO)
+    }
 }
 
 #[cfg(test)]

@@ -1,51 +1,56 @@
 //! What the evaluation shader produces, read back from the device.
 
+use crate::camera::Camera;
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::Global;
+use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
 use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions, View};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Method, Pass, to_ptex};
-use hullform::tessellation::triangulate;
+use hullform::method::{Displacement, to_ptex};
 use hullform::{Error, Result, abi};
 
 /// Vertices that are captured at once: as many as 64 MiB hold.
 const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
 
-/// Tessellates `model` on the device, some patches at a time, and gathers what the evaluation shader produced.
+/// The picture in which depth tags see the surface: `render`'s own.
+const SEEN: [f32; 2] = [1280.0, 720.0];
+
+/// Tessellates `model` on the device, some patches at a time, and gathers what the evaluating shader produced. Depth tags, if any, go by what
+/// `camera` sees.
 pub fn capture(
     gpu: &Gpu,
     model: &Model,
-    method: &Method,
-    cut: Cut,
+    chosen: Chosen,
+    cutting: Cutting,
+    camera: Option<Camera>,
     global: &Global,
 ) -> Result<Surface> {
+    let Cutting { cut, backend, .. } = cutting;
     let options = SurfaceOptions {
+        backend,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
         capture_vertices: CAPTURED,
         greatest_level: cut.level,
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, model, method, options)?;
-    drawing.upload()?;
+    let mut drawing = Drawing::new(gpu, model, chosen, options)?;
+    drawing.upload(global.points)?;
     // Nothing is rasterised, but draws need a render pass.
     let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
     let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;
-    let batches = drawing.surface().batches(cut)?;
-    drawing.write_slots(cut, &batches);
+    let tags = camera.and_then(|camera| {
+        let view = drawing.framed(model, camera, SEEN[0] / SEEN[1]);
+        drawing.tags(model, cutting, &view, SEEN)
+    });
+    let batches = drawing.batches(cut, tags.as_ref())?;
     let mut surface = Surface::default();
     let captured = batches.iter().try_for_each(|batch| {
         let captured = capture_batch(gpu, &drawing, &target, &pipelines, cut, batch)?;
-        add_patches(
-            &mut surface,
-            &captured,
-            model,
-            &drawing.surface().prepared().passes[batch.pass],
-        );
+        add_patches(&mut surface, &captured, model, &drawing, cut, batch.pass);
         Ok(())
     });
     // SAFETY: every submission has been waited for.
@@ -83,10 +88,13 @@ fn capture_batch(
             "{overflows} patches found no room in the scratch ring; use --slots host, or a larger --ring-bytes"
         )));
     }
-    Ok(once_each(drawing.surface().captured(), batch.vertices))
+    let surface = drawing.surface();
+    let patches = batch.first..batch.end;
+    let expected = patches.map(|patch| surface.vertices(cut, batch.pass, patch));
+    Ok(once_each(surface.captured(), expected.sum()))
 }
 
-/// The captured vertices by patch, v and u, each once: an evaluation shader may run more than once a vertex.
+/// The captured vertices by patch, v and u, each once: the evaluating shader may run more than once a vertex.
 fn once_each(captured: &[abi::Captured], expected: u32) -> Vec<abi::Captured> {
     let mut vertices = captured.to_vec();
     let key = |vertex: &abi::Captured| {
@@ -108,13 +116,23 @@ fn once_each(captured: &[abi::Captured], expected: u32) -> Vec<abi::Captured> {
 }
 
 /// Adds the points and triangles of captured patches.
-fn add_patches(surface: &mut Surface, captured: &[abi::Captured], model: &Model, pass: &Pass) {
+fn add_patches(
+    surface: &mut Surface,
+    captured: &[abi::Captured],
+    model: &Model,
+    drawing: &Drawing<'_>,
+    cut: Cut,
+    pass_number: usize,
+) {
+    let drawn = drawing.surface();
+    let pass = &drawn.prepared().passes[pass_number];
     for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {
-        let number = vertices[0].patch_number as usize;
-        let patch = &pass.patches[number];
+        let number = vertices[0].patch_number;
+        let patch = &pass.patches[number as usize];
         let first = surface.points.len() as u32;
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
-        let triangles = triangulate(pass.domain, &uv)
+        let triangles = drawn
+            .triangles(cut, pass_number, number, &uv)
             .into_iter()
             .map(|triangle| triangle.map(|i| first + i));
         surface.triangles.extend(triangles);
@@ -123,7 +141,7 @@ fn add_patches(surface: &mut Surface, captured: &[abi::Captured], model: &Model,
             uv: to_ptex(patch, vertex.uv),
             position: (Vec3::from(vertex.position).as_dvec3() + model.centre()).to_array(),
             normal: vertex.normal,
-            texture: pass.texture_coordinates(number, vertex.uv),
+            texture: pass.texture_coordinates(number as usize, vertex.uv),
         }));
     }
 }

@@ -3,17 +3,21 @@
 use std::time::Instant;
 
 use ash::vk;
+use glam::{Vec2, Vec3};
 use hullform::gpu::{
-    Batch, Counters, Cut, Fill, Layout, Pipelines, Slots, SurfaceOptions, Target,
-    TessellatedSurface, View,
+    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, Slots, SurfaceOptions,
+    Target, TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::Method;
-use hullform::plan::PlanOptions;
-use hullform::{Result, tessellation::Spacing};
+use hullform::method::DepthTags;
+use hullform::tessellation::{Domain, Spacing};
+use hullform::{Error, Result};
 
+use crate::adaptive::Seen;
+use crate::camera::{self, Camera};
 use crate::gpu::Gpu;
+use crate::options::{Chosen, Cutting, Points};
 
 /// A model on the device, and how long it took to get there.
 pub struct Drawing<'a> {
@@ -31,11 +35,20 @@ impl<'a> Drawing<'a> {
     pub fn new(
         gpu: &'a Gpu,
         model: &Model,
-        method: &Method,
+        chosen: Chosen,
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
+        if options.backend == Backend::Geometry
+            && !gpu.device.info().support.optional.geometry_shader
+        {
+            return Err(Error::Option {
+                option: "--backend",
+                problem: format!("{} has no geometry shaders", gpu.device.info().name),
+                remedy: "choose another device, or the backend pattern or tessellator".into(),
+            });
+        }
         let started = Instant::now();
-        let prepared = method.prepare(model, PlanOptions::default())?;
+        let prepared = chosen.prepare(model)?;
         let planned = Instant::now();
         let device = gpu.device.raw();
         let mut drawing = Drawing {
@@ -64,15 +77,31 @@ impl<'a> Drawing<'a> {
         Ok(drawing)
     }
 
-    /// Copies everything to the device.
-    pub fn upload(&mut self) -> Result<()> {
+    /// Copies everything to the device, which computes points again if it is asked to.
+    pub fn upload(&mut self, points: Points) -> Result<()> {
         let started = Instant::now();
-        let gpu = self.gpu;
-        gpu.device.submit(|cmd| {
-            // SAFETY: recording on the device that made the surface, outside of a render pass.
-            unsafe { self.surface().cmd_upload(gpu.device.raw(), cmd) };
+        let (gpu, device) = (self.gpu, self.gpu.device.raw());
+        let on_device = (points == Points::Device).then(|| {
+            // SAFETY: the device is live, the layout its own.
+            unsafe { PointPipeline::new(device, self.layout(), vk::PipelineCache::null()) }
+        });
+        let pipeline = on_device.transpose()?;
+        let uploaded = gpu.device.submit(|cmd| {
+            let (surface, layout) = (self.surface(), self.layout());
+            // SAFETY: recording on the device that made everything, outside of a render pass; the upload makes control vertices visible.
+            unsafe {
+                surface.cmd_upload(device, cmd);
+                if let Some(pipeline) = &pipeline {
+                    surface.cmd_points(device, cmd, layout, pipeline);
+                }
+            }
             Ok(())
-        })?;
+        });
+        if let Some(pipeline) = pipeline.filter(|_| !gpu.device.is_hung()) {
+            // SAFETY: the submission has been waited for.
+            unsafe { pipeline.destroy(device) };
+        }
+        uploaded?;
         let surface = self.surface.as_mut().expect("there from new to drop");
         // SAFETY: the upload has been waited for.
         unsafe { surface.finish_upload(gpu.device.raw(), &mut gpu.device.allocator()) };
@@ -85,12 +114,54 @@ impl<'a> Drawing<'a> {
         self.surface.as_ref().expect("there from new to drop")
     }
 
-    /// Lets the host give slots for the batches of a cut.
-    pub fn write_slots(&mut self, cut: Cut, batches: &[Batch]) {
-        self.surface
-            .as_mut()
-            .expect("there from new to drop")
-            .write_slots(cut, batches);
+    /// What a camera sees that frames the surface itself, in a picture of some aspect: the control mesh may reach far beyond it.
+    pub fn framed(&self, model: &Model, camera: Camera, aspect: f32) -> camera::View {
+        let prepared = self.surface().prepared();
+        let controls = prepared.controls(model.positions());
+        let samples = |domain| match domain {
+            Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
+            Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.3, 0.3]],
+        };
+        let points = prepared.passes.iter().flat_map(|pass| {
+            let controls = &controls;
+            let patches = 0..pass.patches.len();
+            patches.flat_map(move |patch| {
+                samples(pass.domain)
+                    .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
+            })
+        });
+        camera.frame(&points.collect::<Vec<Vec3>>(), aspect)
+    }
+
+    /// The depth tags that a cutting asks for, as seen in a picture of `size` pixels.
+    pub fn tags(
+        &self,
+        model: &Model,
+        cutting: Cutting,
+        view: &camera::View,
+        size: [f32; 2],
+    ) -> Option<DepthTags> {
+        let seen = Seen {
+            clip_from_model: view.clip_from_model(),
+            eye: view.eye(),
+            size,
+        };
+        let outline = &self.surface().prepared().outline;
+        let level = cutting.cut.level;
+        let adaptive = cutting.adaptive?;
+        Some(adaptive.tags(outline, &model.positions(), level, seen))
+    }
+
+    /// The batches of a cut, with what the host decides about their patches written.
+    pub fn batches(&mut self, cut: Cut, tags: Option<&DepthTags>) -> Result<Vec<Batch>> {
+        let batches = self.surface().batches(cut)?;
+        let device = &self.gpu.device;
+        let surface = self.surface.as_mut().expect("there from new to drop");
+        // SAFETY: device and allocator made the surface; every submission has been waited for.
+        unsafe {
+            surface.write_draws(device.raw(), &mut device.allocator(), cut, tags, &batches)?;
+        }
+        Ok(batches)
     }
 
     /// The pipelines for a target.
@@ -113,6 +184,7 @@ impl<'a> Drawing<'a> {
                 vk::PipelineCache::null(),
                 self.surface().prepared(),
                 target,
+                self.surface().options().backend,
                 spacing,
                 fill,
             )

@@ -1,5 +1,6 @@
 //! The `hullform` program: subdivision surfaces from the command line.
 
+mod adaptive;
 mod camera;
 mod capture;
 mod compare;

@@ -1,9 +1,13 @@
 //! Options that several subcommands share, and how their values are read.
 
+use crate::adaptive::Adaptive;
 use crate::camera::Camera;
 use clap::{Args, ValueEnum};
-use hullform::mesh::Scheme;
-use hullform::method::{Method, method, method_for};
+use hullform::Error;
+use hullform::mesh::{Model, Scheme};
+use hullform::method::{
+    METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method, method_for,
+};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -29,6 +33,9 @@ pub struct Global {
     /// Who gives patches their slots in that memory
     #[arg(long, global = true, value_name = "WHO", default_value = "counter")]
     pub slots: Slots,
+    /// Who computes the points that some methods derive from the control vertices, with the same bits
+    #[arg(long, global = true, value_name = "WHO", default_value = "host")]
+    pub points: Points,
 }
 
 impl Global {
@@ -36,6 +43,15 @@ impl Global {
     pub fn prints_json(&self) -> bool {
         self.json == Some(Json::Print)
     }
+}
+
+/// Who computes points from the control vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Points {
+    /// The host, on all cores
+    Host,
+    /// A compute shader
+    Device,
 }
 
 /// Where results go as JSON.
@@ -156,6 +172,112 @@ pub struct Cut {
     method: Option<String>,
     #[command(flatten)]
     steps: Steps,
+    /// Level by depth tags of the control vertices, up to --level: `distance[:UNITS]` (halves with the distance from the eye, beyond the
+    /// nearest vertex or so many units), `screen[:PIXELS]` (segments of at most 8 pixels, or so many), `curvature[:DEGREES]` (normals
+    /// turn by at most 5 degrees a segment, or so many)
+    #[arg(long, value_name = "HOW")]
+    adaptive: Option<Adaptive>,
+    #[command(flatten)]
+    tables: Tables,
+}
+
+/// How a surface is cut up, by whom, and by what depth tags go.
+#[derive(Clone, Copy, Debug)]
+pub struct Cutting {
+    /// How finely.
+    pub cut: hullform::gpu::Cut,
+    /// By whom.
+    pub backend: hullform::gpu::Backend,
+    /// What depth tags go by.
+    pub adaptive: Option<Adaptive>,
+}
+
+/// A method, and how it prepares.
+#[derive(Clone, Copy)]
+pub struct Chosen {
+    /// The method.
+    pub method: &'static Method,
+    /// Its options.
+    pub options: MethodOptions,
+}
+
+impl Chosen {
+    /// Prepares a model.
+    pub fn prepare(&self, model: &Model) -> hullform::Result<Prepared> {
+        self.method.prepare(model, self.options)
+    }
+}
+
+/// How tables of basis functions are made: options of whatever prepares a model for drawing.
+#[derive(Args)]
+pub struct Tables {
+    /// Level of tables of basis functions, 1 to 6: a patch has 2^N segments an edge [default: 5]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=6))]
+    table_level: Option<u32>,
+    /// Level of the refined mesh whose normals subdivision shading begins with, 0 to 2 [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=2))]
+    shading_level: Option<u32>,
+    /// Normals of the limit, by tables of tangents, instead of subdivision shading
+    #[arg(long, conflicts_with = "shading_level")]
+    geometric_normals: bool,
+}
+
+impl Tables {
+    /// What some methods prepare with.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when something is asked for that none of them uses.
+    pub fn options(&self, methods: &[&Method]) -> hullform::Result<MethodOptions> {
+        match self.asked() {
+            Some(option) if !methods.iter().any(|method| method.uses_tables) => {
+                Err(useless(option, methods))
+            }
+            _ => Ok(MethodOptions::from(self.tables())),
+        }
+    }
+
+    /// The first option that was given.
+    fn asked(&self) -> Option<&'static str> {
+        let given = [
+            ("--table-level", self.table_level.is_some()),
+            ("--shading-level", self.shading_level.is_some()),
+            ("--geometric-normals", self.geometric_normals),
+        ];
+        let mut given = given.into_iter().filter(|(_, given)| *given);
+        given.next().map(|(option, _)| option)
+    }
+
+    fn tables(&self) -> TableOptions {
+        let usual = TableOptions::default();
+        let normals = match self.shading_level {
+            _ if self.geometric_normals => TableNormals::Geometric,
+            Some(level) => TableNormals::Shading(level),
+            None => usual.normals,
+        };
+        TableOptions {
+            level: self.table_level.unwrap_or(usual.level),
+            normals,
+        }
+    }
+}
+
+/// An option of tables, and methods that have none.
+fn useless(option: &'static str, methods: &[&Method]) -> Error {
+    let names = |methods: &mut dyn Iterator<Item = &Method>| {
+        let names: Vec<&str> = methods.map(|method| method.name).collect();
+        names.join(", ")
+    };
+    Error::Option {
+        option,
+        problem: format!(
+            "no tables are used by {}",
+            names(&mut methods.iter().copied())
+        ),
+        remedy: format!(
+            "leave it out, or choose a method that has tables ({})",
+            names(&mut METHODS.iter().filter(|method| method.uses_tables))
+        ),
+    }
 }
 
 /// How finely: options of whatever tessellates.
@@ -167,30 +289,63 @@ pub struct Steps {
     /// Spacing of the vertices along an edge
     #[arg(long, default_value = "equal")]
     pub spacing: Spacing,
+    /// Who cuts patches into triangles; all but the tessellator raise levels to powers of two
+    #[arg(long, value_name = "WHO", default_value = "tessellator")]
+    pub backend: Backend,
+}
+
+/// Who cuts patches into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The tessellator, between control and evaluation shaders
+    Tessellator,
+    /// Refinement patterns in instances, evaluated in the vertex shader
+    Pattern,
+    /// The geometry shader, up to level 32
+    Geometry,
+}
+
+impl From<Backend> for hullform::gpu::Backend {
+    fn from(backend: Backend) -> Self {
+        match backend {
+            Backend::Tessellator => hullform::gpu::Backend::Tessellator,
+            Backend::Pattern => hullform::gpu::Backend::Pattern,
+            Backend::Geometry => hullform::gpu::Backend::Geometry,
+        }
+    }
 }
 
 impl Cut {
-    /// The method that is asked for, or else draws a scheme.
-    pub fn method(&self, scheme: Scheme) -> hullform::Result<&'static Method> {
-        let Some(name) = &self.method else {
-            return Ok(method_for(scheme));
+    /// The method that is asked for, or else draws a scheme, with its options.
+    pub fn chosen(&self, scheme: Scheme) -> hullform::Result<Chosen> {
+        let method = match &self.method {
+            None => method_for(scheme),
+            Some(name) => method(name)?,
         };
-        let method = method(name)?;
-        method.check(scheme).map(|()| method)
+        method.check(scheme)?;
+        let options = self.tables.options(&[method])?;
+        Ok(Chosen { method, options })
     }
 
     /// As the library takes it.
-    pub fn cut(&self) -> hullform::gpu::Cut {
-        self.steps.cut()
+    pub fn cutting(&self) -> Cutting {
+        Cutting {
+            adaptive: self.adaptive,
+            ..self.steps.cutting()
+        }
     }
 }
 
 impl Steps {
     /// As the library takes it.
-    pub fn cut(&self) -> hullform::gpu::Cut {
-        hullform::gpu::Cut {
-            level: self.level,
-            spacing: self.spacing.into(),
+    pub fn cutting(&self) -> Cutting {
+        Cutting {
+            cut: hullform::gpu::Cut {
+                level: self.level,
+                spacing: self.spacing.into(),
+            },
+            backend: self.backend.into(),
+            adaptive: None,
         }
     }
 }

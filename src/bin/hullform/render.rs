@@ -3,16 +3,14 @@
 use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
-use crate::options::{self, Global, Size};
+use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{Format, Pending, picture, png, wrote};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
-use glam::{Vec2, Vec3};
-use hullform::gpu::{self, Batch, Cut, Fill, Pipelines, Slots, SurfaceOptions};
+use hullform::gpu::{self, Batch, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Method, Prepared};
-use hullform::tessellation::Domain;
+use hullform::method::Displacement;
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -74,22 +72,23 @@ pub enum Shading {
 /// Everything to be drawn.
 struct Scene<'a> {
     model: &'a Model,
-    method: &'a Method,
-    cut: Cut,
+    chosen: Chosen,
+    cutting: Cutting,
     sight: Sight,
     shading: Shading,
     displacement: Displacement,
     wireframe: bool,
     ring_bytes: u64,
     slots: Slots,
+    points: options::Points,
     load_seconds: f64,
 }
 
 /// Where a scene is seen from.
 enum Sight {
-    /// From where the camera sees all of the surface, in a picture of this aspect.
-    Framed(Camera, f32),
-    /// From a given place.
+    /// From where the camera sees all of the surface, in a picture of this size.
+    Framed(Camera, Size),
+    /// From a given place; depth tags are not asked for.
     Given(View),
 }
 
@@ -100,7 +99,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
     let started = Instant::now();
     let mesh = model::load(arguments.model.as_deref(), &arguments.shape)?;
-    arguments.cut.method(mesh.options().scheme)?;
+    arguments.cut.chosen(mesh.options().scheme)?;
     let model = Model::new(mesh);
     let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
@@ -135,14 +134,15 @@ fn draw_picture(
     let (target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
-        method: arguments.cut.method(model.mesh().options().scheme)?,
-        cut: arguments.cut.cut(),
-        sight: Sight::Framed(arguments.sight.camera, width as f32 / height as f32),
+        chosen: arguments.cut.chosen(model.mesh().options().scheme)?,
+        cutting: arguments.cut.cutting(),
+        sight: Sight::Framed(arguments.sight.camera, arguments.size),
         shading: arguments.shading,
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
+        points: global.points,
         load_seconds,
     };
     let stats = progress::during("drawing", |_| draw(gpu, &target, &scene))?;
@@ -172,21 +172,22 @@ pub fn draw_lit(
     gpu: &Gpu,
     target: &OffscreenTarget,
     model: &Model,
-    method: &Method,
-    cut: Cut,
+    chosen: Chosen,
+    cutting: Cutting,
     view: View,
     global: &Global,
 ) -> Result<()> {
     let scene = Scene {
         model,
-        method,
-        cut,
+        chosen,
+        cutting,
         sight: Sight::Given(view),
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
+        points: global.points,
         load_seconds: 0.0,
     };
     draw(gpu, target, &scene).map(drop)
@@ -217,23 +218,33 @@ fn draw_with(
     scene: &Scene<'_>,
     slots: Slots,
 ) -> Result<Value> {
+    let Cutting { cut, backend, .. } = scene.cutting;
     let options = SurfaceOptions {
+        backend,
         ring_bytes: scene.ring_bytes,
         slots,
-        greatest_level: scene.cut.level,
+        greatest_level: cut.level,
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, scene.model, scene.method, options)?;
-    drawing.upload()?;
-    let batches = drawing.surface().batches(scene.cut)?;
-    drawing.write_slots(scene.cut, &batches);
+    let mut drawing = Drawing::new(gpu, scene.model, scene.chosen, options)?;
+    drawing.upload(scene.points)?;
+    let (view, tags) = match scene.sight {
+        Sight::Framed(camera, Size { width, height }) => {
+            let size = [width as f32, height as f32];
+            let view = drawing.framed(scene.model, camera, size[0] / size[1]);
+            let tags = drawing.tags(scene.model, scene.cutting, &view, size);
+            (view, tags)
+        }
+        Sight::Given(view) => (view, None),
+    };
+    let batches = drawing.batches(cut, tags.as_ref())?;
     let started = Instant::now();
-    let mut pipelines = vec![drawing.pipelines(target, scene.cut.spacing, Fill::Solid)?];
+    let mut pipelines = vec![drawing.pipelines(target, cut.spacing, Fill::Solid)?];
     if scene.wireframe {
-        pipelines.push(drawing.pipelines(target, scene.cut.spacing, Fill::Lines)?);
+        pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
     }
-    let drawn = draw_frame(gpu, target, scene, &drawing, &pipelines, &batches);
+    let drawn = draw_frame(gpu, target, scene, &view, &drawing, &pipelines, &batches);
     let seconds = started.elapsed().as_secs_f64();
     for pipelines in pipelines {
         // SAFETY: the submission has been waited for.
@@ -247,6 +258,7 @@ fn draw_frame(
     gpu: &Gpu,
     target: &OffscreenTarget,
     scene: &Scene<'_>,
+    view: &View,
     drawing: &Drawing<'_>,
     pipelines: &[Pipelines],
     batches: &[Batch],
@@ -256,7 +268,6 @@ fn draw_frame(
         .then(|| StatisticsQuery::new(&gpu.device))
         .transpose()?;
     let device = gpu.device.raw();
-    let view = scene.frame(drawing.surface().prepared());
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         drawing.surface().cmd_prepare(device, cmd);
@@ -270,8 +281,8 @@ fn draw_frame(
         drawing.cmd_draw(
             cmd,
             &pipelines[0],
-            &library_view(&view, scene),
-            scene.cut,
+            &library_view(view, scene),
+            scene.cutting.cut,
             batches,
         );
         if let Some(query) = &query {
@@ -287,9 +298,9 @@ fn draw_frame(
                 lines,
                 &gpu::View {
                     shading: abi::SHADING_LINES,
-                    ..library_view(&view, scene)
+                    ..library_view(view, scene)
                 },
-                scene.cut,
+                scene.cutting.cut,
                 &again,
             );
         }
@@ -329,9 +340,10 @@ fn statistics(
     json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": scene.method.name,
-        "level": scene.cut.level,
-        "spacing": scene.cut.spacing.name(),
+        "method": scene.chosen.method.name,
+        "level": scene.cutting.cut.level,
+        "backend": scene.cutting.backend.name(),
+        "spacing": scene.cutting.cut.spacing.name(),
         "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },
         "plans": plans.plans,
         "draws": batches.len(),
@@ -356,36 +368,11 @@ fn statistics(
     })
 }
 
-impl Scene<'_> {
-    /// Frames the surface itself: the control mesh may reach far beyond it.
-    fn frame(&self, prepared: &Prepared) -> View {
-        let (camera, aspect) = match self.sight {
-            Sight::Framed(camera, aspect) => (camera, aspect),
-            Sight::Given(view) => return view,
-        };
-        let controls = prepared.controls(self.model.positions());
-        let samples = |domain| match domain {
-            Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
-            Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.3, 0.3]],
-        };
-        let points = prepared.passes.iter().flat_map(|pass| {
-            let controls = &controls;
-            let patches = 0..pass.patches.len();
-            patches.flat_map(move |patch| {
-                samples(pass.domain)
-                    .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
-            })
-        });
-        camera.frame(&points.collect::<Vec<Vec3>>(), aspect)
-    }
-}
-
 /// The view as the library takes it.
 fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
-    let eye = view.eye_from_model.inverse().transform_point3(Vec3::ZERO);
     gpu::View {
         clip_from_model: view.clip_from_model().to_cols_array_2d(),
-        eye: eye.to_array(),
+        eye: view.eye().to_array(),
         shading: scene.shading.code(),
         displacement: scene.displacement,
     }

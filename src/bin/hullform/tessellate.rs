@@ -23,17 +23,28 @@ pub struct Arguments {
     shape: options::Shape,
     #[command(flatten)]
     cut: options::Cut,
+    /// Where --adaptive looks from, and at what picture
+    #[command(flatten)]
+    sight: options::Sight,
 }
 
 /// Tessellates the model on the device and writes what came out.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let format = Format::of(&arguments.output, &[Format::Csv, Format::Obj, Format::Ply])?;
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
-    let method = arguments.cut.method(model.mesh().options().scheme)?;
+    let chosen = arguments.cut.chosen(model.mesh().options().scheme)?;
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {
-        capture(&gpu, &model, method, arguments.cut.cut(), global)
+        let camera = Some(arguments.sight.camera);
+        capture(
+            &gpu,
+            &model,
+            chosen,
+            arguments.cut.cutting(),
+            camera,
+            global,
+        )
     })?;
     gpu.finish()?;
     progress::during("writing", |_| {

@@ -5,12 +5,13 @@ use crate::conformance::edges::{
     Drawn, LEVELS, LineKind, Setup, compare, finding, pictures, random_mesh,
 };
 use crate::conformance::meshes::{
-    creased_polygons, creased_sheet, framed_polygon, moved, open_star, sheet, star, under,
+    can_draw, creased_polygons, creased_sheet, framed_polygon, moved, open_star, sheet, star, under,
 };
 use crate::conformance::{Case, Context};
 use crate::error::{Error, Result};
 use crate::gpu::Slots;
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
+use crate::method::{METHODS, MethodOptions, TableNormals, TableOptions};
 use crate::plan::PlanOptions;
 
 const RULE: &str = "on every edge and spoke all faces have the same vertices, and there and at every vertex the same bits of position and normal";
@@ -38,6 +39,7 @@ pub(super) fn cases() -> Vec<Case> {
     cases.extend(mixed());
     cases.extend(ways_of_drawing());
     cases.extend(plans());
+    cases.extend(tables());
     cases.extend(displaced());
     cases.extend(places());
     cases.extend(random());
@@ -64,15 +66,23 @@ pub(super) fn model_cases(name: &str) -> Vec<Case> {
         .into()
 }
 
-/// Shapes cut into triangles, and random meshes, for the methods that take those. Semi-sharp creases are not for the butterfly.
+/// Shapes of triangles, or of triangles and quads, and random meshes, for the methods that take those. Semi-sharp creases are not for the butterfly.
 fn triangles() -> impl Iterator<Item = Case> {
-    let shapes = ["cube", "hull", "ngons", "sheet", "creased-torus", "pole-64"];
-    let shapes = shapes
-        .into_iter()
-        .flat_map(|shape| [Scheme::Loop, Scheme::Butterfly].map(|scheme| (shape, scheme)));
+    let shapes = [
+        "cube",
+        "hull",
+        "ngons",
+        "sheet",
+        "creased-torus",
+        "pole-7",
+        "pole-64",
+    ];
+    let shapes = shapes.into_iter().flat_map(|shape| {
+        [Scheme::Loop, Scheme::Butterfly, Scheme::LoopStam].map(|scheme| (shape, scheme))
+    });
     let known = shapes.filter(|&(shape, scheme)| {
-        let mesh = builtin(shape).and_then(|mesh| under(mesh, scheme));
-        mesh.is_ok()
+        let mut whole = METHODS.iter().filter(|method| method.contract.watertight);
+        whole.any(|method| can_draw(method, shape, scheme))
     });
     let shapes = known.map(|(shape, scheme)| {
         let setup = Setup::new(&[1.0, 2.0, 3.0, 5.0, 8.0]);
@@ -310,10 +320,10 @@ fn plans() -> impl Iterator<Item = Case> {
     let shallow = [1, 2, 3, 4].into_iter().flat_map(|max_level| {
         ["hull", "ngons"].map(|shape| {
             let setup = Setup {
-                plans: PlanOptions {
+                options: MethodOptions::from(PlanOptions {
                     max_level,
                     ..Default::default()
-                },
+                }),
                 ..Setup::new(&[3.0, 8.0])
             };
             let name = format!("edges.plan.{max_level}_levels-{shape}");
@@ -322,16 +332,41 @@ fn plans() -> impl Iterator<Item = Case> {
     });
     let refined = ["hull", "creased-torus"].map(|shape| {
         let setup = Setup {
-            plans: PlanOptions {
+            options: MethodOptions::from(PlanOptions {
                 direct_creases: false,
                 ..Default::default()
-            },
+            }),
             ..Setup::new(&[3.0, 8.0])
         };
         let name = format!("edges.plan.refined_creases-{shape}");
         case(name, setup, move |_| builtin(shape))
     });
     shallow.chain(refined)
+}
+
+/// Tables of another level, and with other normals.
+fn tables() -> impl Iterator<Item = Case> {
+    let options = [
+        ("level_2", 2, TableNormals::Shading(1)),
+        ("shading_0", 5, TableNormals::Shading(0)),
+        ("shading_2", 5, TableNormals::Shading(2)),
+        ("geometric", 5, TableNormals::Geometric),
+    ];
+    options.into_iter().flat_map(|(word, level, normals)| {
+        let meshes = [
+            ("ngons", Scheme::CatmullClark),
+            ("sheet", Scheme::Butterfly),
+            ("pole-7", Scheme::LoopStam),
+        ];
+        meshes.map(|(shape, scheme)| {
+            let setup = Setup {
+                options: TableOptions { level, normals }.into(),
+                ..Setup::new(&[1.0, 3.0, 8.0])
+            };
+            let name = format!("edges.tables.{word}-{shape}-{scheme}");
+            case(name, setup, move |_| under(builtin(shape)?, scheme))
+        })
+    })
 }
 
 fn displaced() -> impl Iterator<Item = Case> {

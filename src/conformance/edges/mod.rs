@@ -18,8 +18,7 @@ use crate::conformance::{Context, Finding, Group};
 use crate::error::Result;
 use crate::gpu::{Cut, Fill, Slots, SurfaceOptions};
 use crate::mesh::{ControlMesh, Model};
-use crate::method::{Displacement, METHODS, Method, Prepared};
-use crate::plan::PlanOptions;
+use crate::method::{Displacement, METHODS, Method, MethodOptions, Prepared};
 use crate::tessellation::Spacing;
 
 pub use shared::{Compared, LineKind, Shared};
@@ -60,8 +59,8 @@ pub enum Drawn {
 /// How a model is prepared, drawn and compared.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// The plans.
-    pub plans: PlanOptions,
+    /// What methods prepare with.
+    pub options: MethodOptions,
     /// The tess levels.
     pub levels: Vec<f32>,
     /// The spacings.
@@ -78,7 +77,7 @@ impl Setup {
     /// These levels, both spacings, and nothing special.
     pub fn new(levels: &[f32]) -> Setup {
         Setup {
-            plans: PlanOptions::default(),
+            options: MethodOptions::default(),
             levels: levels.to_vec(),
             spacings: SPACINGS.to_vec(),
             displacement: 0.0,
@@ -117,7 +116,7 @@ fn compare_method(
     setup: &Setup,
     method: &Method,
 ) -> Result<Compared> {
-    let prepared = method.prepare(model, setup.plans)?;
+    let prepared = method.prepare(model, setup.options)?;
     let cuts = setup.cuts();
     let options = options(context, &prepared, &cuts, setup.drawn);
     let workarounds = match setup.drawn {

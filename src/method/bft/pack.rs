@@ -5,13 +5,13 @@ use rustc_hash::FxHashMap;
 use crate::abi::{self, TableFace, TablePlace};
 use crate::mesh::Model;
 use crate::method::bft::lattice::Lattice;
-use crate::method::bft::{Tables, domain, twin};
+use crate::method::bft::{Normals, Tables, domain, twin};
 use crate::method::patches::{self, Part};
 use crate::method::{Pass, to_ptex};
 use crate::tessellation::Domain;
 
 /// The passes of quads and of triangles, which may be empty.
-pub fn passes(model: &Model, tables: &Tables, max_level: u32) -> [Pass; 2] {
+pub fn passes(model: &Model, tables: &Tables) -> [Pass; 2] {
     let owners = Owners::new(tables);
     let children = children(model);
     [("bft_quads", Domain::Quads), ("bft", Domain::Triangles)].map(|(shader, domain)| {
@@ -20,10 +20,12 @@ pub fn passes(model: &Model, tables: &Tables, max_level: u32) -> [Pass; 2] {
             pass: Pass::new(shader, domain, 1, twin),
             numbers: FxHashMap::default(),
             offsets: FxHashMap::default(),
+            order: Vec::new(),
             faces: Vec::new(),
             weights: Vec::new(),
         };
-        packer.pass.max_level = max_level;
+        // Of faces, whose edges are two patches long.
+        packer.pass.max_level = tables.level + 1;
         let faces = children.iter().filter(|child| child.part.domain == domain);
         for child in faces.clone() {
             packer.add(model, child);
@@ -106,6 +108,8 @@ struct Packer<'a> {
     numbers: FxHashMap<u32, u32>,
     /// Where each kind's weights begin.
     offsets: FxHashMap<u32, u32>,
+    /// The face of each number.
+    order: Vec<u32>,
     faces: Vec<TableFace>,
     weights: Vec<f32>,
 }
@@ -164,7 +168,9 @@ impl Packer<'_> {
             weights,
             corners,
             segments,
+            normals: number,
         });
+        self.order.push(face);
         self.pass.controls.extend_from_slice(vertices);
         self.numbers.insert(face, number);
         number
@@ -200,7 +206,43 @@ impl Packer<'_> {
             .collect()
     }
 
+    /// Adds what normals come from, behind all faces.
+    fn add_normals(&mut self) {
+        let tables = self.tables;
+        let (weights, flag) = match &tables.normals {
+            Normals::Same => return,
+            Normals::Tangents(weights) => (weights, abi::TABLE_TANGENTS),
+            Normals::Refined(_, weights) => (weights, 0),
+        };
+        let mut offsets = FxHashMap::default();
+        for (number, &face) in self.order.iter().enumerate() {
+            let kind = tables.kinds[face as usize];
+            let first = *offsets.entry(kind).or_insert_with(|| {
+                let first = self.weights.len() as u32;
+                self.weights.extend_from_slice(&weights[kind as usize]);
+                first
+            });
+            let mut other = TableFace {
+                weights: first,
+                ..self.faces[number]
+            };
+            if let Normals::Refined(found, _) = &tables.normals {
+                let found = found[face as usize].as_ref();
+                let vertices = found.map_or(&[][..], |found| &found.vertices);
+                other.controls = self.pass.controls.len() as u32;
+                other.count = vertices.len() as u32;
+                // Their points come behind those of the mesh refined once.
+                let points = tables.topology.vertex_count() as u32;
+                let numbers = vertices.iter().map(|vertex| points + vertex);
+                self.pass.controls.extend(numbers);
+            }
+            self.faces[number].normals = self.faces.len() as u32 | flag;
+            self.faces.push(other);
+        }
+    }
+
     fn finish(mut self, places: &[TablePlace]) -> Pass {
+        self.add_normals();
         self.pass.tables = vec![
             bytemuck::cast_slice(&self.weights).to_vec(),
             bytemuck::cast_slice(&self.faces).to_vec(),

@@ -1,4 +1,5 @@
-//! A table of basis functions: for every point of a face's lattice the weights of the configuration's vertices in its limit.
+//! A table of basis functions: for every point of a face's lattice the weights of the configuration's vertices in its limit, or in two tangents
+//! there (section II-C).
 //!
 //! "All vertices are placed within the plane except one which is moved to 1" (section II-A): the configuration is refined with unit vectors for
 //! values, one component a vertex. All in f64; weights are rounded once, to f32.
@@ -7,22 +8,23 @@ use rustc_hash::FxHashMap;
 
 use crate::mesh::Scheme;
 use crate::mesh::topology::Topology;
-use crate::method::bft::configuration::Configuration;
+use crate::method::bft::configuration::{Cell, Configuration, children};
 use crate::method::bft::lattice::Lattice;
 use crate::subdivision::{
-    Blend, Mask, Refinement, deep_limit, refine_all, scheme_rings, vertex_limit,
+    Blend, LimitStencil, Mask, Refinement, deep_limit, refine_all, scheme_rings, vertex_limit,
 };
-
-/// A descendant of the face: its number in the topology, and where its corners lie on the lattice of this level.
-type Cell = (u32, Vec<[u32; 2]>);
 
 /// The configuration's mesh at some level.
 struct Level {
     topology: Topology,
     /// Of each vertex the weights of the configuration's vertices.
     values: Vec<Vec<f64>>,
+    /// Descendants of the face in the topology, on the lattice of this level.
     cells: Vec<Cell>,
 }
+
+/// The masks of something at a corner of a face.
+type Masks = fn(&Topology, Scheme, u32, u32) -> Vec<Mask>;
 
 /// The weights at each row of the lattice, one a vertex of the configuration.
 pub fn weights(
@@ -31,8 +33,29 @@ pub fn weights(
     configuration: &Configuration,
     lattice: Lattice,
 ) -> Vec<f32> {
-    let mut level = Level::new(topology, configuration, lattice.corners);
-    for _ in 0..lattice.segments.ilog2() {
+    rows(topology, scheme, configuration, lattice, limit_position)
+}
+
+/// The weights of two tangents at each row of the lattice, those of the first before those of the second. Of the tangents only the normal counts: from
+/// point to point they may turn and change their length.
+pub fn tangents(
+    topology: &Topology,
+    scheme: Scheme,
+    configuration: &Configuration,
+    lattice: Lattice,
+) -> Vec<f32> {
+    rows(topology, scheme, configuration, lattice, limit_tangents)
+}
+
+fn rows(
+    topology: &Topology,
+    scheme: Scheme,
+    configuration: &Configuration,
+    lattice: Lattice,
+    masks: Masks,
+) -> Vec<f32> {
+    let mut level = Level::new(topology, configuration);
+    for _ in configuration.level..lattice.segments.ilog2() {
         level = level.refined(scheme);
     }
     let mut limits: FxHashMap<u32, Vec<f64>> = FxHashMap::default();
@@ -40,7 +63,7 @@ pub fn weights(
         for (corner, &[i, j]) in (0..).zip(corners) {
             limits
                 .entry(lattice.row(i, j))
-                .or_insert_with(|| level.limit(scheme, *face, corner));
+                .or_insert_with(|| level.weights(masks(&level.topology, scheme, *face, corner)));
         }
     }
     let rows = (0..lattice.rows()).flat_map(|row| &limits[&row]);
@@ -49,7 +72,7 @@ pub fn weights(
 
 impl Level {
     /// The configuration itself.
-    fn new(topology: &Topology, configuration: &Configuration, corners: u32) -> Level {
+    fn new(topology: &Topology, configuration: &Configuration) -> Level {
         let (topology, vertices) = topology.excerpt(&configuration.faces);
         let order: FxHashMap<u32, usize> =
             configuration.vertices.iter().copied().zip(0..).collect();
@@ -58,15 +81,11 @@ impl Level {
             value[order[vertex]] = 1.0;
             value
         };
-        let mut corners: Vec<[u32; 2]> = match corners {
-            3 => vec![[0, 0], [1, 0], [0, 1]],
-            _ => vec![[0, 0], [1, 0], [1, 1], [0, 1]],
-        };
-        corners.rotate_right(configuration.turn as usize);
+        let cells = configuration.cells.iter().map(|(_, corners)| corners);
         Level {
             values: vertices.iter().map(unit).collect(),
             topology,
-            cells: vec![(0, corners)],
+            cells: (0..).zip(cells.cloned()).collect(),
         }
     }
 
@@ -91,46 +110,32 @@ impl Level {
         }
     }
 
-    /// The weights of the limit at a corner of a face.
-    fn limit(&self, scheme: Scheme, face: u32, corner: u32) -> Vec<f64> {
-        Vec::blend(
-            &limit_position(&self.topology, scheme, face, corner),
-            &self.values,
-        )
+    /// The weights of masks, one mask after the other.
+    fn weights(&self, masks: Vec<Mask>) -> Vec<f64> {
+        let all = masks.iter();
+        all.flat_map(|mask| Vec::blend(mask, &self.values))
+            .collect()
     }
 }
 
 /// The mask of the limit position at a corner. An interpolating scheme's vertices are there already.
-fn limit_position(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> Mask {
+fn limit_position(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> Vec<Mask> {
     if scheme == Scheme::Butterfly {
         let vertex = topology.face(face)[corner as usize];
-        return Mask::from_slice(&[(vertex, 1.0)]);
+        return vec![Mask::from_slice(&[(vertex, 1.0)])];
     }
-    let known = vertex_limit(topology, scheme, face, corner);
-    known
-        .unwrap_or_else(|| deep_limit(topology, scheme, face, corner))
-        .position
+    vec![limit(topology, scheme, face, corner).position]
 }
 
-/// The four children of a triangle or quad in the order of [`refine_all`], with their corners on a lattice of twice the segments: each lies between
-/// two corners of the parent, and the middle of a quad between two opposite ones.
-fn children(face: u32, corners: &[[u32; 2]]) -> Vec<Cell> {
-    let n = corners.len();
-    let between = |a: usize, b: usize| {
-        let [a, b] = [corners[a % n], corners[b % n]];
-        [a[0] + b[0], a[1] + b[1]]
-    };
-    let mut children: Vec<Cell> = (0..n)
-        .map(|corner| {
-            let child = (0..n).map(|other| between(corner, other));
-            (4 * face + corner as u32, child.collect())
-        })
-        .collect();
-    if n == 3 {
-        let middle = (0..3).map(|corner| between(corner + 1, corner + 2));
-        children.push((4 * face + 3, middle.collect()));
-    }
-    children
+/// The masks of two tangents at a corner.
+fn limit_tangents(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> Vec<Mask> {
+    let LimitStencil { du, dv, .. } = limit(topology, scheme, face, corner);
+    vec![du, dv]
+}
+
+fn limit(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> LimitStencil {
+    let known = vertex_limit(topology, scheme, face, corner);
+    known.unwrap_or_else(|| deep_limit(topology, scheme, face, corner))
 }
 
 /// The faces of the cells, which come first, and rings of faces around them.

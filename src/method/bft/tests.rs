@@ -1,10 +1,10 @@
-use glam::Vec2;
+use glam::{DVec3, Vec2};
 
 use super::*;
 use crate::error::Error;
 use crate::mesh::{ControlMesh, INFINITE_SHARPNESS, Triangulation, builtin, triangulated};
-use crate::method::to_ptex;
-use crate::subdivision::LimitSurface;
+use crate::method::{from_ptex, to_ptex};
+use crate::subdivision::{Blend, LimitSurface, Mask};
 
 fn model(mesh: ControlMesh, scheme: Scheme) -> Model {
     let mesh = if scheme.is_triangular() {
@@ -61,8 +61,8 @@ fn fan(n: usize, closed: bool) -> ControlMesh {
 
 /// The greatest distance over the diagonal between the twin and the truth, at every `stride`th point of the lattice of every patch.
 fn worst(model: &Model, level: u32, stride: u32) -> f64 {
-    let options = PlanOptions {
-        max_level: level + 1,
+    let options = TableOptions {
+        level,
         ..Default::default()
     };
     let prepared = METHOD.prepare(model, options).expect("tables cover it");
@@ -124,7 +124,7 @@ fn the_lattice_lies_on_the_limit_at_every_valence() {
 
 #[test]
 fn every_table_level_is_on_the_limit() {
-    for level in 1..=GREATEST_TABLE_LEVEL {
+    for level in 1..=TableOptions::GREATEST_LEVEL {
         let off = worst(&model(fan(7, false), Scheme::Loop), level, 101);
         assert!(off <= 1e-6, "level {level}: {off}");
     }
@@ -135,7 +135,11 @@ fn weights_sum_to_one() {
     for &scheme in METHOD.schemes {
         let model = model(smooth("ngons"), scheme);
         let refined = refine_all(model.topology(), scheme).topology;
-        let tables = Tables::new(refined, scheme, 3);
+        let options = TableOptions {
+            level: 3,
+            ..Default::default()
+        };
+        let tables = Tables::new(refined, None, scheme, options);
         for (face, found) in (0..).zip(&tables.configurations) {
             let found = found.as_ref().expect("no face is a hole");
             let weights = &tables.weights[tables.kinds[face] as usize];
@@ -145,6 +149,22 @@ fn weights_sum_to_one() {
             }
         }
     }
+}
+
+#[test]
+fn tables_that_no_device_has_to_bind_are_refused() {
+    let pass = |bytes: usize| {
+        let mut pass = Pass::new("bft", Domain::Triangles, 1, twin);
+        pass.tables = vec![vec![0; bytes / 4]];
+        pass
+    };
+    assert!(check_size(&pass(MOST_BYTES)).is_ok());
+    let refused = check_size(&pass(MOST_BYTES + 4)).expect_err("it is too large");
+    assert!(
+        refused
+            .to_string()
+            .starts_with("--table-level: the tables take 134217732 bytes")
+    );
 }
 
 /// The configurations that fans of up to 18 edges have, each once, with the mesh that it is in.
@@ -187,13 +207,29 @@ fn tables_up_to_valence_18_take_no_more_memory_than_the_papers() {
 fn both_sides_of_an_edge_have_the_same_bits() {
     for &scheme in METHOD.schemes {
         for name in ["ngons", "sheet", "pole-5"] {
-            let model = model(smooth(name), scheme);
-            hold_edges(&model);
+            hold_edges(&model(smooth(name), scheme), TableOptions::default());
         }
     }
-    let mixed = mixed();
-    hold_edges(&mixed);
+    hold_edges(&mixed(), TableOptions::default());
 }
+
+#[test]
+fn whatever_normals_have_the_same_bits_on_both_sides_of_an_edge() {
+    for normals in NORMALS {
+        let options = TableOptions { level: 3, normals };
+        for &scheme in METHOD.schemes {
+            hold_edges(&model(smooth("sheet"), scheme), options);
+        }
+        hold_edges(&mixed(), options);
+    }
+}
+
+const NORMALS: [TableNormals; 4] = [
+    TableNormals::Shading(0),
+    TableNormals::Shading(1),
+    TableNormals::Shading(2),
+    TableNormals::Geometric,
+];
 
 /// A triangle on a quad, with a pentagon beside it.
 fn mixed() -> Model {
@@ -217,10 +253,8 @@ fn triangles_beside_quads_lie_on_the_limit() {
     assert!(off <= 1e-6, "{off}");
 }
 
-fn hold_edges(model: &Model) {
-    let prepared = METHOD
-        .prepare(model, PlanOptions::default())
-        .expect("tables cover it");
+fn hold_edges(model: &Model, options: TableOptions) {
+    let prepared = METHOD.prepare(model, options).expect("tables cover it");
     let controls = prepared.controls(model.positions());
     let refined = refine_all(model.topology(), model.mesh().options().scheme).topology;
     let mut seen = std::collections::HashMap::new();
@@ -265,11 +299,249 @@ fn on_edge(domain: Domain, side: usize, t: f32) -> Vec2 {
     }
 }
 
+/// Points of a lattice with the normals that are there: pass, patch, where, and what the twin says.
+type Found<'a> = (&'a Pass, usize, [f32; 2], Vec3);
+
+/// Calls `look` with every `stride`th point of the lattice of every patch.
+fn each_normal(model: &Model, options: TableOptions, stride: u32, mut look: impl FnMut(Found<'_>)) {
+    let prepared = METHOD.prepare(model, options).expect("tables cover it");
+    let controls = prepared.controls(model.positions());
+    let n = 1u32 << options.level;
+    for pass in &prepared.passes {
+        for patch in 0..pass.patches.len() {
+            for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+                let kept = (i * 7 + j * 13 + patch as u32).is_multiple_of(stride);
+                if kept && (pass.domain == Domain::Quads || i + j <= n) {
+                    let uv = [i, j].map(|x| x as f32 / n as f32);
+                    let own = pass.evaluate(&controls, patch, Vec2::from(uv));
+                    look((pass, patch, uv, own.normal));
+                }
+            }
+        }
+    }
+}
+
+/// Where (u, v) of a patch lies in its face of the refined mesh, which has the patch's corner 0 at `turn`.
+fn in_face(corners: usize, turn: usize, [u, v]: [f32; 2]) -> [f32; 2] {
+    match corners {
+        3 => {
+            let mut weights = [1.0 - u - v, u, v];
+            weights.rotate_right(turn);
+            [weights[1], weights[2]]
+        }
+        _ => (0..turn).fold([u, v], |[u, v], _| [1.0 - v, u]),
+    }
+}
+
+/// The normal field of Alexa and Boubekeur 2008 in f64: the limit of the scheme with the unit normals of the mesh refined `from` times for vertices.
+struct Shading {
+    /// Over the mesh refined twice if shading begins there, else once.
+    limit: LimitSurface,
+    once: Topology,
+    faces: std::collections::HashMap<Vec<u32>, u32>,
+    twice: bool,
+}
+
+impl Shading {
+    fn new(model: &Model, from: u32) -> Shading {
+        let scheme = model.mesh().options().scheme;
+        let blended = |masks: &[Mask], values: &[DVec3]| -> Vec<DVec3> {
+            masks
+                .iter()
+                .map(|mask| DVec3::blend(mask, values))
+                .collect()
+        };
+        let positions: Vec<DVec3> = model.mesh().positions().to_vec();
+        let once = refine_all(model.topology(), scheme);
+        let refined = blended(&once.masks, &positions);
+        let (mesh, normals) = match from {
+            0 => {
+                let coarse = vertex_normals(model.topology(), &positions);
+                let carried = blended(&once.masks, &coarse);
+                let unit = carried.iter().map(|normal| normal.normalize_or_zero());
+                (once.topology.clone(), unit.collect())
+            }
+            1 => {
+                let normals = vertex_normals(&once.topology, &refined);
+                (once.topology.clone(), normals)
+            }
+            _ => {
+                let twice = refine_all(&once.topology, scheme);
+                let positions = blended(&twice.masks, &refined);
+                let normals = vertex_normals(&twice.topology, &positions);
+                (twice.topology, normals)
+            }
+        };
+        let faces = (0..once.topology.face_count() as u32).map(|face| {
+            let mut vertices = once.topology.face(face).to_vec();
+            vertices.sort_unstable();
+            (vertices, face)
+        });
+        Shading {
+            limit: LimitSurface::new(&with_values(model, &mesh, &normals)),
+            faces: faces.collect(),
+            once: once.topology,
+            twice: from == 2,
+        }
+    }
+
+    /// The unit normal at a point of a patch.
+    fn normal(&self, pass: &Pass, patch: usize, uv: [f32; 2]) -> DVec3 {
+        let n = pass.domain.corners();
+        // The face's corners are the first of its points.
+        let corners = &pass.controls[pass.patches[patch].controls as usize..][..n];
+        let mut sorted = corners.to_vec();
+        sorted.sort_unstable();
+        let face = self.faces[&sorted];
+        let turn = self.once.face(face).iter().position(|&v| v == corners[0]);
+        let uv = in_face(n, turn.expect("its own corner"), uv);
+        let (face, uv) = if self.twice {
+            let (first, count) = match n {
+                3 => (abi::CHILD_OF_TRIANGLE, 4),
+                _ => (abi::CHILD_OF_QUAD, 4),
+            };
+            let children = (0..count).map(|child| {
+                let flags = (first + child) << abi::PATCH_CHILD_SHIFT;
+                let patch = abi::Patch {
+                    flags,
+                    ..Default::default()
+                };
+                (4 * face + child, from_ptex(&patch, uv))
+            });
+            let mut own = children.filter(|(_, uv)| pass.domain.contains(*uv));
+            own.next().expect("some child has it")
+        } else {
+            (face, uv)
+        };
+        let [u, v] = uv.map(f64::from);
+        let sample = self.limit.evaluate(face as usize, u, v);
+        sample.expect("holes are not drawn").position.normalize()
+    }
+}
+
+/// The sum of the cross products at a vertex' corners, of unit length.
+fn vertex_normals(topology: &Topology, positions: &[DVec3]) -> Vec<DVec3> {
+    let mut normals = vec![DVec3::ZERO; positions.len()];
+    for face in 0..topology.face_count() as u32 {
+        let vertices = topology.face(face);
+        let n = vertices.len();
+        for corner in 0..n {
+            let at = |i: usize| positions[vertices[(corner + i) % n] as usize];
+            normals[vertices[corner] as usize] += (at(1) - at(0)).cross(at(n - 1) - at(0));
+        }
+    }
+    normals
+        .iter()
+        .map(|normal| normal.normalize_or_zero())
+        .collect()
+}
+
+/// A refined mesh of the model with other values at its vertices.
+fn with_values(model: &Model, topology: &Topology, values: &[DVec3]) -> ControlMesh {
+    let values: Vec<[f64; 3]> = values.iter().map(|value| value.to_array()).collect();
+    let all = 0..topology.face_count() as u32;
+    let sizes: Vec<u32> = all
+        .clone()
+        .map(|face| topology.face(face).len() as u32)
+        .collect();
+    let faces: Vec<u32> = all
+        .clone()
+        .flat_map(|face| topology.face(face).to_vec())
+        .collect();
+    let mut builder = ControlMesh::builder(&values, &sizes, &faces).options(model.mesh().options());
+    for hole in all.filter(|&face| topology.is_hole(face)) {
+        builder = builder.hole(hole);
+    }
+    builder.build().expect("it is sound")
+}
+
+#[test]
+fn shading_begins_at_the_level_that_is_asked_for() {
+    let mut models = vec![
+        mixed(),
+        model(fan(18, true), Scheme::Loop),
+        model(fan(40, false), Scheme::Loop),
+    ];
+    for &scheme in METHOD.schemes {
+        models.extend(["sheet", "ngons", "pole-5"].map(|name| model(smooth(name), scheme)));
+    }
+    for model in &models {
+        let mut fields = Vec::new();
+        for from in 0..=2 {
+            let truth = Shading::new(model, from);
+            let options = TableOptions {
+                level: 3,
+                normals: TableNormals::Shading(from),
+            };
+            let (mut worst, mut field) = (0.0f64, Vec::new());
+            each_normal(model, options, 11, |(pass, patch, uv, own)| {
+                let right = truth.normal(pass, patch, uv);
+                worst = worst.max(own.as_dvec3().distance(right));
+                field.push(own);
+            });
+            let scheme = model.mesh().options().scheme;
+            println!(
+                "{scheme} {} faces, level {from}: {worst:e}",
+                model.mesh().face_count()
+            );
+            assert!(worst <= 3e-6, "{scheme}, level {from}: {worst}");
+            assert!(
+                !fields.contains(&field),
+                "each level has normals of its own"
+            );
+            fields.push(field);
+        }
+    }
+}
+
+/// The butterfly's limit has no tangent plane at boundary vertices of other than three faces.
+fn is_irregular_boundary(topology: &Topology, vertex: u32) -> bool {
+    let faces = topology.vertex_faces(vertex).len();
+    faces != topology.vertex_edges(vertex).len() && faces != 3
+}
+
+#[test]
+fn geometric_normals_are_those_of_the_limit() {
+    let mut models = vec![mixed()];
+    for n in (3..=18).chain([40]) {
+        models.extend([true, false].map(|closed| model(fan(n, closed), Scheme::Loop)));
+    }
+    for &scheme in METHOD.schemes {
+        models.extend(["sheet", "ngons", "pole-5"].map(|name| model(smooth(name), scheme)));
+    }
+    for model in &models {
+        let truth = LimitSurface::new(model.mesh());
+        let options = TableOptions {
+            level: 3,
+            normals: TableNormals::Geometric,
+        };
+        let scheme = model.mesh().options().scheme;
+        let refined = refine_all(model.topology(), scheme).topology;
+        let mut worst = 0.0f64;
+        each_normal(model, options, 11, |(pass, patch, uv, own)| {
+            let record = &pass.patches[patch];
+            if let Spot::Corner(corner) = spot(pass.domain, Vec2::from(uv)) {
+                let vertex = pass.controls[(record.controls + corner) as usize];
+                if scheme == Scheme::Butterfly && is_irregular_boundary(&refined, vertex) {
+                    return;
+                }
+            }
+            let [u, v] = to_ptex(record, uv).map(f64::from);
+            let right = truth.evaluate(record.ptex as usize, u, v);
+            let right = right.expect("holes are not drawn").normal();
+            let own = own.as_dvec3();
+            worst = worst.max(own.cross(right).length().atan2(own.dot(right)));
+        });
+        println!("{scheme} {} faces: {worst:e}", model.mesh().face_count());
+        assert!(worst <= 1e-5, "{scheme}: {worst}");
+    }
+}
+
 #[test]
 fn what_tables_do_not_cover_is_refused_by_name() {
     let refusal = |mesh: ControlMesh| {
         let model = Model::new(mesh);
-        match METHOD.prepare(&model, PlanOptions::default()) {
+        match METHOD.prepare(&model, MethodOptions::default()) {
             Err(error @ Error::Input { .. }) => error.to_string(),
             other => format!("{other:?}"),
         }

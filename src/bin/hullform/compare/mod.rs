@@ -9,10 +9,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::Vec3;
-use hullform::gpu::Cut;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{METHODS, Method, Prepared, method};
-use hullform::plan::PlanOptions;
 use hullform::subdivision::LimitSurface;
 use hullform::{Error, Result};
 use serde_json::{Value, json};
@@ -20,7 +18,7 @@ use serde_json::{Value, json};
 use crate::camera::View;
 use crate::capture::capture;
 use crate::gpu::Gpu;
-use crate::options::{self, Global, Size};
+use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{Format, Pending, Surface, picture as composed, png, wrote};
 use crate::{model, print, progress, render};
 use errors::{Errors, Known, Reference, Twin};
@@ -52,6 +50,8 @@ pub struct Arguments {
     shape: options::Shape,
     #[command(flatten)]
     steps: options::Steps,
+    #[command(flatten)]
+    tables: options::Tables,
     /// Size in pixels of each of the three pictures of a method
     #[arg(long, value_name = "WxH", default_value = "480x360")]
     size: Size,
@@ -61,14 +61,14 @@ pub struct Arguments {
 
 /// A method that could draw the model: what it made, and how far off that is.
 struct Column {
-    method: &'static Method,
+    chosen: Chosen,
     patches: usize,
     surface: Surface,
     errors: Errors,
 }
 
 /// A method that can draw the model, and the number of its patches.
-type Able = (&'static Method, usize);
+type Able = (Chosen, usize);
 
 /// A method that could not, and why.
 struct Refusal {
@@ -84,14 +84,18 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let against = against(&arguments.against)?;
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
     let asked = asked(&arguments.methods, model.mesh().options().scheme)?;
+    let all: Vec<&Method> = asked.iter().copied().chain(against).collect();
+    let options = arguments.tables.options(&all)?;
+    let chosen = |method| Chosen { method, options };
+    let asked: Vec<Chosen> = asked.into_iter().map(chosen).collect();
     let file = Pending::create(&arguments.output)?;
-    let (able, refusals) = sort_out(&model, &asked)?;
-    let mut known = Known::new(reference(&model, against)?);
+    let (able, refusals) = sort_out(&model, &asked, arguments.steps.cutting())?;
+    let mut known = Known::new(reference(&model, against.map(chosen))?);
     let gpu = Gpu::open(global)?;
     let mut columns = Vec::new();
-    for (method, patches) in able {
+    for (chosen, patches) in able {
         columns.push(measure(
-            &gpu, &model, method, patches, &mut known, arguments, global,
+            &gpu, &model, chosen, patches, &mut known, arguments, global,
         )?);
     }
     let scales = scales(&columns);
@@ -145,20 +149,27 @@ fn renamed(error: Error, option: &'static str, also: &str) -> Error {
 }
 
 /// The methods that can draw the model, with the number of their patches, and those that refuse.
-fn sort_out(model: &Model, methods: &[&'static Method]) -> Result<(Vec<Able>, Vec<Refusal>)> {
+fn sort_out(
+    model: &Model,
+    asked: &[Chosen],
+    cutting: Cutting,
+) -> Result<(Vec<Able>, Vec<Refusal>)> {
     let (mut able, mut refusals) = (Vec::new(), Vec::new());
-    for &method in methods {
+    for &chosen in asked {
         match progress::during("planning", |_| {
-            method.prepare(model, PlanOptions::default())
+            let prepared = chosen.prepare(model)?;
+            cutting.backend.check(&prepared, cutting.cut.level)?;
+            Ok::<_, Error>(prepared)
         }) {
-            Ok(prepared) => able.push((method, patches(&prepared))),
+            Ok(prepared) => able.push((chosen, patches(&prepared))),
             Err(error) => {
-                tracing::warn!("{} cannot draw this model: {error}", method.name);
+                let name = chosen.method.name;
+                tracing::warn!("{name} cannot draw this model: {error}");
                 refusals.push(Refusal {
-                    name: method.name,
+                    name,
                     reason: error.to_string(),
                 });
-                if refusals.len() == methods.len() {
+                if refusals.len() == asked.len() {
                     // With the exit code of the last refusal.
                     return Err(error);
                 }
@@ -172,11 +183,11 @@ fn patches(prepared: &Prepared) -> usize {
     prepared.passes.iter().map(|pass| pass.patches.len()).sum()
 }
 
-fn reference(model: &Model, against: Option<&'static Method>) -> Result<Reference> {
+fn reference(model: &Model, against: Option<Chosen>) -> Result<Reference> {
     Ok(match against {
         None => Reference::Truth(Box::new(LimitSurface::new(model.mesh()))),
-        Some(method) => {
-            let prepared = method.prepare(model, PlanOptions::default())?;
+        Some(chosen) => {
+            let prepared = chosen.prepare(model)?;
             Reference::Method(Box::new(Twin::new(model, prepared)))
         }
     })
@@ -186,17 +197,19 @@ fn reference(model: &Model, against: Option<&'static Method>) -> Result<Referenc
 fn measure(
     gpu: &Gpu,
     model: &Model,
-    method: &'static Method,
+    chosen: Chosen,
     patches: usize,
     known: &mut Known,
     arguments: &Arguments,
     global: &Global,
 ) -> Result<Column> {
-    let cut = arguments.steps.cut();
-    let surface = progress::during("tessellating", |_| capture(gpu, model, method, cut, global))?;
+    let cutting = arguments.steps.cutting();
+    let surface = progress::during("tessellating", |_| {
+        capture(gpu, model, chosen, cutting, None, global)
+    })?;
     progress::during("evaluating the reference", |bar| known.learn(&surface, bar));
     Ok(Column {
-        method,
+        chosen,
         patches,
         errors: Errors::new(&surface, known, diagonal(model)),
         surface,
@@ -232,12 +245,12 @@ fn draw(
 ) -> Result<Page> {
     let Size { width, height } = arguments.size;
     let (target, factor) = render::target(gpu, width, height)?;
-    let cut: Cut = arguments.steps.cut();
+    let cutting = arguments.steps.cutting();
     let view = view(model, columns, arguments);
     let finish = || composed::compose(&target.read_pixels(), width, height, factor);
     let mut rows = Vec::new();
     for column in columns {
-        render::draw_lit(gpu, &target, model, column.method, cut, view, global)?;
+        render::draw_lit(gpu, &target, model, column.chosen, cutting, view, global)?;
         let lit = finish();
         let mut tiles = vec![lit];
         let maps = [&column.errors.positions, &column.errors.normals];
@@ -278,6 +291,7 @@ fn report(
         "model": arguments.model,
         "against": arguments.against,
         "level": arguments.steps.level,
+        "backend": arguments.steps.cutting().backend.name(),
         "methods": methods,
         "refused": refused.collect::<Vec<_>>(),
     });
@@ -286,7 +300,7 @@ fn report(
 
 fn facts(column: &Column) -> Value {
     json!({
-        "method": column.method.name,
+        "method": column.chosen.method.name,
         "triangles": column.surface.triangles.len(),
         "patches": column.patches,
         "vertices": column.surface.points.len(),
@@ -310,7 +324,7 @@ fn as_text(arguments: &Arguments, columns: &[Column], refusals: &[Refusal]) -> S
         let triangles = column.surface.triangles.len();
         let line = format!(
             "{:16} {triangles:>10}   {}",
-            column.method.name,
+            column.chosen.method.name,
             numbers.join("  ")
         );
         line.trim_end().to_string()

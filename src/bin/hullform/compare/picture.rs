@@ -94,7 +94,7 @@ pub fn lay_out(
     title(&mut page, arguments);
     let mut y = MARGIN + TITLE;
     for (method, tiles) in rows {
-        let x = page.words(MARGIN, y, Face::Heading, INK, method.method.name);
+        let x = page.words(MARGIN, y, Face::Heading, INK, method.chosen.method.name);
         let counts = format!(
             "  {} triangles, {} patches",
             method.surface.triangles.len(),

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+// A vertex of a refinement pattern, evaluated on the patch of its instance (Boubekeur, Schlick 2007, section 3.2).
+
+#include "lib/whole.glsl"
+#include "lib/vertex.glsl"
+
+layout(set = 0, binding = BINDING_INSTANCES, scalar) readonly buffer InstanceTable { uint instances[]; };
+
+void main() {
+    uint number = instances[gl_InstanceIndex];
+    Patch record = patch_record(number);
+    fit_patch(record);
+    uint index = uint(gl_VertexIndex);
+    uvec2 place = uvec2(index & ((1u << PATTERN_SHIFT) - 1u), index >> PATTERN_SHIFT);
+    // Exact: segments are a power of two.
+    vec2 uv = vec2(place) / float(frame.segments);
+    write_vertex(record, number, uv, evaluate_patch(record, 0u, uv));
+}

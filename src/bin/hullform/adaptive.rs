@@ -1,0 +1,95 @@
+//! `--adaptive`: what depth tags go by.
+
+use std::str::FromStr;
+
+use glam::{Mat4, Vec3};
+use hullform::method::{DepthTags, Outline};
+
+/// What depth tags go by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Adaptive {
+    /// The distance from the eye: the full level up to this many units of the model, or up to the nearest control vertex, and half of it at
+    /// twice the distance.
+    Distance(Option<f32>),
+    /// The picture: segments of at most so many pixels.
+    Screen(f32),
+    /// The curvature: segments whose ends' normals differ by at most so many degrees.
+    Curvature(f32),
+}
+
+/// Pixels of a segment when nobody says how many.
+const PIXELS: f32 = 8.0;
+/// Degrees of a segment.
+const DEGREES: f32 = 5.0;
+
+impl FromStr for Adaptive {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Adaptive, Self::Err> {
+        let (name, number) = match text.split_once(':') {
+            None => (text, None),
+            Some((name, number)) => match number.parse::<f32>() {
+                Ok(number) if number.is_finite() && number > 0.0 => (name, Some(number)),
+                _ => return Err("expected a number greater than 0 after the colon"),
+            },
+        };
+        match name {
+            "distance" => Ok(Adaptive::Distance(number)),
+            "screen" => Ok(Adaptive::Screen(number.unwrap_or(PIXELS))),
+            "curvature" => Ok(Adaptive::Curvature(number.unwrap_or(DEGREES))),
+            _ => Err("expected distance[:UNITS], screen[:PIXELS] or curvature[:DEGREES]"),
+        }
+    }
+}
+
+/// From where tags are seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// From the model, relative to its centre, to clip space.
+    pub clip_from_model: Mat4,
+    /// The eye in model space.
+    pub eye: Vec3,
+    /// The picture's size in pixels.
+    pub size: [f32; 2],
+}
+
+impl Adaptive {
+    /// The tags of control vertices; `level` is the greatest level.
+    pub fn tags(self, outline: &Outline, vertices: &[Vec3], level: f32, seen: Seen) -> DepthTags {
+        match self {
+            Adaptive::Distance(near) => {
+                let distances = vertices.iter().map(|vertex| vertex.distance(seen.eye));
+                let nearest = distances.fold(f32::INFINITY, f32::min);
+                let near = near.unwrap_or(nearest).max(f32::MIN_POSITIVE);
+                DepthTags::by_distance(vertices, seen.eye, near, level.log2())
+            }
+            Adaptive::Screen(pixels) => {
+                let clip = seen.clip_from_model.to_cols_array_2d();
+                DepthTags::by_screen(outline, vertices, clip, seen.size, pixels)
+            }
+            Adaptive::Curvature(degrees) => DepthTags::by_curvature(outline, vertices, degrees),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_numbers() {
+        assert_eq!("screen:4".parse(), Ok(Adaptive::Screen(4.0)));
+        assert_eq!("curvature".parse(), Ok(Adaptive::Curvature(DEGREES)));
+        assert_eq!("distance".parse(), Ok(Adaptive::Distance(None)));
+        for wrong in [
+            "",
+            "near",
+            "screen:0",
+            "screen:",
+            "curvature:-1",
+            "distance:NaN",
+        ] {
+            assert!(wrong.parse::<Adaptive>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! Group `backends`: tessellator, refinement patterns and geometry shaders draw one surface, and depth tags leave it whole.
+//!
+//! Patterns and rows of triangles lie on a lattice of powers of two, so their vertices are known beforehand, and where the tessellator has the
+//! same place, the bits must be the same: all evaluate by the same functions. Whether a surface is whole is asked of the triangles alone, in
+//! words of their positions: an edge that has no partner is open.
+//!
+//! A seeded fault turns a bit of a vertex, or gives a patch's edge the tags of another.
+
+use std::collections::{BTreeMap, HashMap};
+
+use glam::{Vec2, Vec3};
+
+use crate::abi::Captured;
+use crate::conformance::capture::{Frame, SPACINGS, bits, capturing, cut, prepare, spacing_name};
+use crate::conformance::meshes::{can_draw, under};
+use crate::conformance::{Case, Check, Context, Finding, Group, Random};
+use crate::error::Result;
+use crate::gpu::{Backend, Cut, Fill, SurfaceOptions, TessellatedSurface};
+use crate::mesh::{Model, builtin};
+use crate::method::{DepthTags, METHODS, Method, Prepared};
+use crate::tessellation::Spacing;
+
+/// The group.
+pub const GROUP: Group = Group {
+    name: "backends",
+    about: "patterns and geometry shaders, against the tessellator; depth tags",
+    cases,
+    model_cases: None,
+};
+
+const SOURCE: &str = "Boubekeur, Schlick 2007, section 3.2";
+
+const SHAPES: [&str; 4] = ["cube", "ngons", "pole-7", "sheet"];
+
+const LEVELS: [f32; 3] = [2.0, 8.0, 32.0];
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let drawn = METHODS.iter().flat_map(|method| {
+        let schemes = method.schemes.iter().copied();
+        schemes.flat_map(move |scheme| SHAPES.map(|shape| (method, scheme, shape)))
+    });
+    for (method, scheme, shape) in
+        drawn.filter(|&(method, scheme, shape)| can_draw(method, shape, scheme))
+    {
+        let model = move || Ok(Model::new(under(builtin(shape)?, scheme)?));
+        for backend in Backend::ALL {
+            let what = format!("{}-{}-{scheme}-{shape}", backend.name(), method.name);
+            if backend != Backend::Tessellator {
+                let name = format!("backends.same.{what}");
+                let rule = "the same bits as from the tessellator, all vertices and triangles";
+                cases.push(Case::new(name, rule, SOURCE, move |context| {
+                    same(context, &model()?, method, backend)
+                }));
+            }
+            if !method.contract.watertight {
+                continue;
+            }
+            let spacings: &[Spacing] = match backend {
+                Backend::Tessellator => &SPACINGS,
+                Backend::Pattern | Backend::Geometry => &[Spacing::Equal],
+            };
+            for &spacing in spacings {
+                let name = format!("backends.tags.{what}-{}", spacing_name(spacing));
+                let rule = "no edge is open but the boundary's, whatever the tags of its ends";
+                cases.push(Case::new(name, rule, SOURCE, move |context| {
+                    tags(context, &model()?, method, backend, spacing)
+                }));
+            }
+        }
+    }
+    cases
+}
+
+/// Why a device or method cannot do with a backend; None if it can.
+fn lacking(context: &Context, prepared: &Prepared, backend: Backend) -> Result<Option<Finding>> {
+    let support = &context.device()?.info().support;
+    if backend == Backend::Geometry && !support.optional.geometry_shader {
+        return Ok(Some(Finding::skip("the device has no geometry shaders")));
+    }
+    let refused = backend.check(prepared, 1.0).err();
+    Ok(refused.map(|error| Finding::skip(error.to_string())))
+}
+
+/// What a backend draws at a cut, with tags or without.
+pub struct Drawn {
+    /// Captured vertices, a list a pass.
+    pub passes: Vec<Vec<Captured>>,
+    /// Triangles that were clipped and discarded or drawn, where the device counts them.
+    pub primitives: Option<u64>,
+    /// The vertices that were expected.
+    pub expected: u64,
+    /// The segments of the mesh's boundary, which are open.
+    pub boundary: usize,
+    /// The triangles that were expected, as numbers of the vertices of each patch.
+    triangles: Vec<Vec<[[u32; 3]; 3]>>,
+}
+
+impl Drawn {
+    /// Draws a prepared model.
+    ///
+    /// # Errors
+    /// When it cannot be drawn, and Vulkan's own.
+    pub fn new(
+        context: &Context,
+        model: &Model,
+        prepared: Prepared,
+        backend: Backend,
+        tags: Option<DepthTags>,
+        cut: Cut,
+    ) -> Result<Drawn> {
+        let options = SurfaceOptions {
+            backend,
+            ..capturing(context, &prepared, backend.cut(cut))
+        };
+        let workarounds = context.workarounds()?;
+        let bench = context.bench()?;
+        let mut loaded = bench.load(model, prepared, &workarounds, options)?;
+        loaded.tags = tags;
+        let frame = loaded.capture(cut, Fill::Solid)?;
+        let surface = loaded.surface();
+        let passes = surface.prepared().passes.iter().enumerate();
+        let patches = passes.flat_map(|(number, pass)| {
+            (0..pass.patches.len() as u32).map(move |patch| (number, patch))
+        });
+        let patches: Vec<(usize, u32)> = patches.collect();
+        let vertices = |&(pass, patch)| u64::from(surface.vertices(cut, pass, patch));
+        let boundary = |&(pass, patch)| boundary(model, surface, cut, pass, patch);
+        Ok(Drawn {
+            expected: patches.iter().map(vertices).sum(),
+            boundary: patches.iter().map(boundary).sum(),
+            triangles: triangles(surface, &frame, cut),
+            primitives: frame.statistics.map(|[_, _, primitives]| primitives),
+            passes: frame.passes,
+        })
+    }
+
+    /// The vertices by pass, patch and place.
+    fn by_place(&self) -> HashMap<(usize, u32, [u32; 2]), &Captured> {
+        let passes = self.passes.iter().enumerate();
+        let all = passes.flat_map(|(pass, vertices)| {
+            let place = move |v: &Captured| (pass, v.patch_number, v.uv.map(f32::to_bits));
+            vertices.iter().map(move |vertex| (place(vertex), vertex))
+        });
+        all.collect()
+    }
+
+    /// The edges of triangles that have no partner with the same two positions, bit by bit.
+    pub fn open_edges(&self) -> usize {
+        let mut edges: BTreeMap<[[u32; 3]; 2], i64> = BTreeMap::new();
+        for at in self.triangles.iter().flatten() {
+            for [a, b] in [[at[0], at[1]], [at[1], at[2]], [at[2], at[0]]] {
+                let (key, way) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+                if a != b {
+                    *edges.entry(key).or_default() += way;
+                }
+            }
+        }
+        edges.values().filter(|&&sum| sum != 0).count()
+    }
+}
+
+/// The segments of a patch's edges beyond which there is no face that is drawn.
+fn boundary(
+    model: &Model,
+    surface: &TessellatedSurface,
+    cut: Cut,
+    pass: usize,
+    patch: u32,
+) -> usize {
+    let topology = model.topology();
+    let is_open = |side: u32| {
+        let faces = (side < topology.edge_count() as u32).then(|| topology.edge_faces(side));
+        faces.is_some_and(|all| all.iter().filter(|&&face| !topology.is_hole(face)).count() == 1)
+    };
+    let levels = surface.levels(cut, pass, patch);
+    let sides = surface.prepared().passes[pass].sides[patch as usize];
+    let edges = sides
+        .into_iter()
+        .zip(levels.edges)
+        .take(levels.domain.corners());
+    let open = edges.filter(|&(side, _)| is_open(side));
+    open.map(|(_, level)| cut.spacing.segments(level) as usize)
+        .sum()
+}
+
+/// The triangles of each pass, as the bits of their positions.
+fn triangles(surface: &TessellatedSurface, frame: &Frame, cut: Cut) -> Vec<Vec<[[u32; 3]; 3]>> {
+    let of_pass = |(pass, vertices): (usize, &Vec<Captured>)| {
+        let patches = vertices.chunk_by(|a, b| a.patch_number == b.patch_number);
+        let of_patch = patches.flat_map(|own| {
+            let uv: Vec<[f32; 2]> = own.iter().map(|vertex| vertex.uv).collect();
+            let found = surface.triangles(cut, pass, own[0].patch_number, &uv);
+            let at = |i: u32| own[i as usize].position.map(f32::to_bits);
+            found.into_iter().map(move |triangle| triangle.map(at))
+        });
+        of_patch.collect()
+    };
+    frame.passes.iter().enumerate().map(of_pass).collect()
+}
+
+fn same(
+    context: &Context,
+    model: &Model,
+    method: &'static Method,
+    backend: Backend,
+) -> Result<Finding> {
+    let (mut check, mut compared) = (Check::default(), 0);
+    for level in LEVELS {
+        let cut = cut(level, Spacing::Equal);
+        let prepared = prepare(model, method.name)?;
+        if let Some(finding) = lacking(context, &prepared, backend)? {
+            return Ok(finding);
+        }
+        let draw = |backend| Drawn::new(context, model, prepared.clone(), backend, None, cut);
+        let (reference, mut own) = (draw(Backend::Tessellator)?, draw(backend)?);
+        if context.is_wrong() {
+            own.passes[0][0].position[0] += 1.0;
+        }
+        compared += hold_same(&mut check, model, &prepared, &reference, &own, level);
+    }
+    Ok(check.finish(format!("{compared} vertices with the same bits")))
+}
+
+/// Holds what a backend drew to the tessellator's vertices and to the twins; returns how many places both have.
+fn hold_same(
+    check: &mut Check,
+    model: &Model,
+    prepared: &Prepared,
+    reference: &Drawn,
+    own: &Drawn,
+    level: f32,
+) -> usize {
+    let (low, high) = model.mesh().bounds();
+    let most = 1e-6 * low.distance(high) as f32;
+    let controls = prepared.controls(model.positions());
+    let (known, places) = (reference.by_place(), own.by_place());
+    check.hold(places.len() as u64 == own.expected, || {
+        format!(
+            "level {level}: {} of {} vertices",
+            places.len(),
+            own.expected
+        )
+    });
+    let made: usize = own.triangles.iter().map(Vec::len).sum();
+    check.hold(
+        own.primitives.is_none_or(|count| count == made as u64),
+        || {
+            format!(
+                "level {level}: {:?} triangles instead of {made}",
+                own.primitives
+            )
+        },
+    );
+    let mut compared = 0;
+    for (place, vertex) in places {
+        let (pass, patch) = (&prepared.passes[place.0], place.1 as usize);
+        let twin = pass
+            .evaluate(&controls, patch, Vec2::from(vertex.uv))
+            .position;
+        let distance = twin.distance(Vec3::from(vertex.position));
+        check.hold(distance <= most, || {
+            format!("level {level}: {distance} from the twin at {vertex:?}")
+        });
+        // Inside of triangles the tessellator has other points.
+        if let Some(same) = known.get(&place) {
+            check.hold(bits(same) == bits(vertex), || {
+                format!("level {level}: {vertex:?} and {same:?}")
+            });
+            compared += 1;
+        }
+    }
+    compared
+}
+
+fn tags(
+    context: &Context,
+    model: &Model,
+    method: &'static Method,
+    backend: Backend,
+    spacing: Spacing,
+) -> Result<Finding> {
+    let (mut check, mut triangles) = (Check::default(), 0);
+    let mut random = Random::new(context.settings.seed, "backends.tags");
+    let cut = cut(16.0, spacing);
+    for _ in 0..3 {
+        let mut prepared = prepare(model, method.name)?;
+        if let Some(finding) = lacking(context, &prepared, backend)? {
+            return Ok(finding);
+        }
+        if context.is_wrong() {
+            // Whatever the levels are, they are not those of the neighbours.
+            let all = prepared.outline.edges.len() as u32;
+            for sides in prepared.passes[0].sides.iter_mut().step_by(2) {
+                *sides = sides.map(|side| (side + all / 2) % all);
+            }
+        }
+        let depths = (0..model.mesh().vertex_count()).map(|_| random.between(-0.5, 4.5) as f32);
+        let tags = DepthTags::new(depths.collect::<Vec<f32>>());
+        let drawn = Drawn::new(context, model, prepared, backend, Some(tags), cut)?;
+        let (open, boundary) = (drawn.open_edges(), drawn.boundary);
+        check.hold(open == boundary, || {
+            format!("{open} open edges instead of {boundary}")
+        });
+        triangles += drawn.triangles.iter().map(Vec::len).sum::<usize>();
+    }
+    Ok(check.finish(format!("{triangles} triangles")))
+}

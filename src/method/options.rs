@@ -1,0 +1,94 @@
+//! How methods prepare: each takes the options that concern it.
+
+use crate::error::{Error, Result};
+use crate::plan::PlanOptions;
+
+/// The options of all methods.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MethodOptions {
+    /// Of methods with plans.
+    pub plans: PlanOptions,
+    /// Of methods with tables of basis functions: see [`Method::uses_tables`](super::Method::uses_tables).
+    pub tables: TableOptions,
+}
+
+impl From<PlanOptions> for MethodOptions {
+    fn from(plans: PlanOptions) -> MethodOptions {
+        MethodOptions {
+            plans,
+            ..Default::default()
+        }
+    }
+}
+
+impl From<TableOptions> for MethodOptions {
+    fn from(tables: TableOptions) -> MethodOptions {
+        MethodOptions {
+            tables,
+            ..Default::default()
+        }
+    }
+}
+
+/// How tables of basis functions are made (Holländer, Boubekeur 2011).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TableOptions {
+    /// The level of the lattice, 1..=6: a patch has 2^level segments an edge. Tess factors of faces, whose edges are two patches long, stay at or
+    /// below 2^(level + 1).
+    pub level: u32,
+    /// Where normals come from.
+    pub normals: TableNormals,
+}
+
+/// Where the normals of a surface from tables come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableNormals {
+    /// Subdivision shading (Alexa, Boubekeur 2008) from this level on, 0..=2: vertex normals of the mesh refined so often, blended by the same
+    /// weights as positions. The earlier it begins the smoother it looks.
+    Shading(u32),
+    /// The limit's own, from tables of tangents, which take two times the memory of those of positions besides.
+    Geometric,
+}
+
+impl Default for TableOptions {
+    /// Level 5 and shading from level 1 on, as in the paper.
+    fn default() -> TableOptions {
+        TableOptions {
+            level: 5,
+            normals: TableNormals::Shading(1),
+        }
+    }
+}
+
+impl TableOptions {
+    /// The greatest `level`.
+    pub const GREATEST_LEVEL: u32 = 6;
+    /// The latest level that shading begins at.
+    pub const GREATEST_SHADING_LEVEL: u32 = 2;
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when a level is out of range.
+    pub fn check(self) -> Result<TableOptions> {
+        let problem = |level: u32| format!("{level} is out of range");
+        if !(1..=Self::GREATEST_LEVEL).contains(&self.level) {
+            return Err(Error::Option {
+                option: "--table-level",
+                problem: problem(self.level),
+                remedy: "give a level of 1 to 6; 5 serves every tess level that is a power of two"
+                    .into(),
+            });
+        }
+        match self.normals {
+            TableNormals::Shading(level) if level > Self::GREATEST_SHADING_LEVEL => {
+                Err(Error::Option {
+                    option: "--shading-level",
+                    problem: problem(level),
+                    remedy: "give 0, 1 or 2".into(),
+                })
+            }
+            _ => Ok(self),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Depth tags: how deeply the surface is to be refined around each control vertex (Boubekeur, Schlick 2007, section 3.2).
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::method::Outline;
+
+/// A depth for each control vertex: 2 to the depth is the level of the edges around it, the greater one of two tags' an edge's. So both faces
+/// of an edge have the same level there, and levels change smoothly as the tags do.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DepthTags {
+    /// By control vertex, 0..=6.
+    pub depths: Vec<f32>,
+}
+
+/// The deepest: level 64.
+const DEEPEST: f32 = 6.0;
+
+impl DepthTags {
+    /// By what is wanted of each vertex; what is no number, or beyond what tessellators do, is clamped.
+    pub fn new(depths: impl IntoIterator<Item = f32>) -> DepthTags {
+        let clamped = |depth: f32| {
+            if depth.is_nan() {
+                0.0
+            } else {
+                depth.clamp(0.0, DEEPEST)
+            }
+        };
+        DepthTags {
+            depths: depths.into_iter().map(clamped).collect(),
+        }
+    }
+
+    /// View-dependent, by the distance from the eye: `greatest` up to the distance `near`, and one less whenever the distance doubles.
+    pub fn by_distance(vertices: &[Vec3], eye: Vec3, near: f32, greatest: f32) -> DepthTags {
+        let farther = |vertex: &Vec3| (vertex.distance(eye) / near).max(1.0).log2();
+        DepthTags::new(vertices.iter().map(|vertex| greatest - farther(vertex)))
+    }
+
+    /// View-dependent, by what is seen: such that the segments of the edges around a vertex are at most `pixels` long in a picture of `size`
+    /// pixels, wherever they point to. What lies at the eye or behind it is refined to the end.
+    pub fn by_screen(
+        outline: &Outline,
+        vertices: &[Vec3],
+        clip_from_model: [[f32; 4]; 4],
+        size: [f32; 2],
+        pixels: f32,
+    ) -> DepthTags {
+        let clip = Mat4::from_cols_array_2d(&clip_from_model);
+        let scale = |row: Vec4, size: f32| 0.5 * size * row.truncate().length();
+        let pixels_per_unit = scale(clip.row(0), size[0]).max(scale(clip.row(1), size[1]));
+        DepthTags::by_edges(outline, vertices.len(), |from, to| {
+            let [from, to] = [from, to].map(|vertex| vertices[vertex as usize]);
+            let w = clip.row(3).dot(from.extend(1.0)).max(f32::MIN_POSITIVE);
+            (from.distance(to) * pixels_per_unit / w / pixels).log2()
+        })
+    }
+
+    /// View-independent, by the curvature: such that from one end of a segment to the other normals turn by at most `degrees`.
+    pub fn by_curvature(outline: &Outline, vertices: &[Vec3], degrees: f32) -> DepthTags {
+        let normals = outline.normals(vertices);
+        DepthTags::by_edges(outline, vertices.len(), |from, to| {
+            let [a, b] = [from, to].map(|vertex| normals[vertex as usize]);
+            let angle = 2.0 * (a - b).length().atan2((a + b).length());
+            (angle.to_degrees() / degrees).log2()
+        })
+    }
+
+    /// The greatest depth that an edge at a vertex wants, from one end to the other.
+    fn by_edges(outline: &Outline, vertices: usize, depth: impl Fn(u32, u32) -> f32) -> DepthTags {
+        let mut depths = vec![0.0f32; vertices];
+        for &[a, b] in &outline.edges {
+            for (from, to) in [(a, b), (b, a)] {
+                let own = &mut depths[from as usize];
+                *own = own.max(depth(from, to));
+            }
+        }
+        DepthTags::new(depths)
+    }
+}

@@ -234,6 +234,7 @@ const NAMED: [(&str, &str, &str); 17] = [
     ("tests/cli_compare.rs", "bft", WORDS),
     ("tests/cli_models.rs", "quadtree", WORDS),
     ("tests/cli_models.rs", "flat", WORDS),
+    ("tests/cli_compare.rs", "bft", WORDS),
 ];
 
 const PLANS: &str = "it is about plans, which one method has";

@@ -99,8 +99,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 around = sum_of_four(edge_cubes, edge_sum(0u, s, uv.x), edge_sum(1u, t, uv.y), edge_sum(2u, uv.x, s), edge_sum(3u, uv.y, t));
     precise vec3 inside = (9.0 * middle) * sum_of_points(INSIDE, quad_weights(uv));
     precise vec3 position = (sum_of_points(0u, corner_cubes) + 3.0 * around) + inside;
-    precise vec3 normal = (sum_of_points(NORMALS, corner_squares) + 2.0 * sum_of_points(BETWEEN, edge_squares)) +
-                          (4.0 * middle) * in_point[CENTRE];
+    precise vec3 normal = (sum_of_points(NORMALS, corner_squares) + sum_of_points(BETWEEN, edge_squares)) + middle * in_point[CENTRE];
     return Point(position, direction(normal));
 }
 #endif

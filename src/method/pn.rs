@@ -1,7 +1,8 @@
 //! `pn`: curved PN triangles (Vlachos, Peters, Boyd, Mitchell 2001) and PN quads (Peters 2008). Cubic and bicubic Bezier patches for positions,
 //! quadratic and biquadratic ones for normals, from the vertices and normals of the face alone.
 //!
-//! An edge has the same cubic in both, so triangles and quads may meet.
+//! An edge has the same cubic in both, so triangles and quads may meet. The sum of normals is the one that is printed (2001, section 3.3), whose
+//! products have no binomial factors; quads follow it.
 
 use glam::{Vec2, Vec3};
 
@@ -78,7 +79,7 @@ fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoi
     let corners = sum_of_three(w.map(|w| w * w * w), p);
     let around = sum_of_three(pairs, edges);
     let inside = (6.0 * (pairs[0] * w[2])) * middle;
-    let normal = sum_of_three(w.map(|w| w * w), n) + 2.0 * sum_of_three(pairs, between);
+    let normal = sum_of_three(w.map(|w| w * w), n) + sum_of_three(pairs, between);
     SurfacePoint {
         position: (corners + 3.0 * around) + inside,
         normal: normalized(normal) + Vec3::ZERO,
@@ -129,9 +130,8 @@ fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let around = sum_of_four(at_edges(cubes), edges);
     let inner = sum_of_four(quad_weights(uv), inner_points(p, near, far));
     let inside = (9.0 * (pair_u * pair_v)) * inner;
-    let normal = (sum_of_four(at_corners(squares), n)
-        + 2.0 * sum_of_four(at_edges(squares), between))
-        + (4.0 * (pair_u * pair_v)) * centre;
+    let normal = (sum_of_four(at_corners(squares), n) + sum_of_four(at_edges(squares), between))
+        + (pair_u * pair_v) * centre;
     SurfacePoint {
         position: (corners + 3.0 * around) + inside,
         normal: normalized(normal) + Vec3::ZERO,

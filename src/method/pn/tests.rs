@@ -59,7 +59,8 @@ fn at_triangle(net: &Net, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
         3.0 * w * w * v,
         6.0 * u * v * w,
     ];
-    let quadratic = [w * w, u * u, v * v, 2.0 * w * u, 2.0 * u * v, 2.0 * w * v];
+    // As it is printed, without binomial factors.
+    let quadratic = [w * w, u * u, v * v, w * u, u * v, w * v];
     (sum(&net.positions, &cubic), sum(&net.normals, &quadratic))
 }
 
@@ -96,7 +97,7 @@ fn at_quad(net: &Net, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
         let s = 1.0 - t;
         vec![s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
     };
-    let quadratic = |t: f64| vec![(1.0 - t) * (1.0 - t), 2.0 * t * (1.0 - t), t * t];
+    let quadratic = |t: f64| vec![(1.0 - t) * (1.0 - t), t * (1.0 - t), t * t];
     let products = |in_u: Vec<f64>, in_v: Vec<f64>| -> Vec<f64> {
         let rows = in_v.iter();
         rows.flat_map(|&y| in_u.iter().map(move |&x| x * y))

@@ -10,6 +10,12 @@ struct Shares {
     vec4 shares;
 };
 
+// How many rows there are, up to the last that has a share: of a point of the lattice itself only one.
+uint row_count(Shares shares) {
+    vec4 of = shares.shares;
+    return of.w != 0.0 ? 4u : of.z != 0.0 ? 3u : of.y != 0.0 ? 2u : 1u;
+}
+
 // Point `step` of an edge, counted from its first corner; the last is the next corner.
 uint edge_row(TableFace face, uint side, uint count) {
     if (count == 0u) return side;

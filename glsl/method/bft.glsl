@@ -68,12 +68,12 @@ Spot spot(vec2 uv) {
 // The sum over the face's points (equation 1), from the last to the first; the same weights for normals are subdivision shading (section
 // II-C). Normals have any length.
 Point weighted(TableFace face, Shares shares) {
+    uint rows = row_count(shares);
     precise vec3 position = vec3(0.0);
     precise vec3 normal = vec3(0.0);
     for (uint i = face.count; i-- > 0u;) {
         precise float weight = 0.0;
-        for (uint k = 0u; k < 4u; ++k) {
-            if (shares.shares[k] == 0.0) continue;
+        for (uint k = 0u; k < rows; ++k) {
             weight += shares.shares[k] * weights[face.weights + shares.rows[k] * face.count + i];
         }
         Point point = points[controls[face.controls + i]];
@@ -87,9 +87,9 @@ Point weighted(TableFace face, Shares shares) {
 // differences, which lose less.
 vec3 limit_normal(TableFace face, Shares shares) {
     vec3 origin = points[controls[face.controls]].position;
+    uint rows = row_count(shares);
     precise vec3 normal = vec3(0.0);
-    for (uint k = 0u; k < 4u; ++k) {
-        if (shares.shares[k] == 0.0) continue;
+    for (uint k = 0u; k < rows; ++k) {
         uint first = face.weights + 2u * shares.rows[k] * face.count;
         precise vec3 du = vec3(0.0);
         precise vec3 dv = vec3(0.0);
@@ -116,22 +116,28 @@ Point summed(uint number, Shares shares) {
     return point;
 }
 
+// Which face is asked and for what stands first, and the sum once: code that is there for each case would be run for all of them wherever some
+// invocations of a group are at edges and others inside.
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Spot found = spot(uv);
     uint first = record.plan * 2u * CORNERS;
+    uint number = record.plan;
+    Shares shares;
     if (found.corner != NOWHERE) {
         TablePlace place = places[first + CORNERS + found.corner];
-        return summed(place.face, Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0)));
-    }
-    if (found.edge != NOWHERE) {
+        number = place.face;
+        shares = Shares(uvec4(place.side, 0u, 0u, 0u), vec4(1.0, 0.0, 0.0, 0.0));
+    } else if (found.edge != NOWHERE) {
         TablePlace place = places[first + found.edge];
-        TableFace face = faces[place.face];
+        number = place.face;
         bool flipped = (place.side & PLACE_FLIPPED) != 0u;
         precise float reverse = 1.0 - found.along;
-        precise float at = (flipped ? reverse : found.along) * float(face.segments);
-        return summed(place.face, lattice_along(face, place.side & ~PLACE_FLIPPED, at));
+        precise float at = (flipped ? reverse : found.along) * float(faces[number].segments);
+        shares = lattice_along(faces[number], place.side & ~PLACE_FLIPPED, at);
+    } else {
+        shares = lattice_inside(faces[number], uv);
     }
-    return summed(record.plan, lattice_inside(faces[record.plan], uv));
+    return summed(number, shares);
 }
 #endif
 

@@ -1,7 +1,7 @@
 //! Surface methods: how each prepares a model for the GPU, and how its evaluation reads as a CPU twin.
 //!
 //! A method is one file here, one or more in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the
-//! rows; nothing else names a method.
+//! rows; nothing else names a method. [`choosing`] tells what each is good for.
 //!
 //! # Adding a method
 //!
@@ -17,7 +17,8 @@
 //! and other weighted sums, limits with their normals, normals of rings of faces, means of normals. The device and the host compute them with
 //! the same bits. A patch then names points instead of vertices (`vertices.rs`).
 //!
-//! **The shader.** `glsl/surface.vert`, `.tesc`, `.tese` and `.frag` include it in the place of `#include "method"`. It defines `TRIANGLES`
+//! **The shader.** `glsl/surface.vert`, `.tesc`, `.tese`, `.frag`, `.pattern.vert` and `.geom` include it in the place of `#include "method"`; the last
+//! two call all of its functions in one stage (`lib/whole.glsl`). It defines `TRIANGLES`
 //! if its domain is that, includes `lib/levels.glsl`, and gives:
 //!
 //! | what | in stage | is |
@@ -45,6 +46,8 @@
 //! `scripts/update-spirv`, its pictures as `tests/pictures.rs` says, and its lines in the README.
 
 mod bft;
+#[doc = include_str!("choosing.md")]
+pub mod choosing {}
 mod displacement;
 mod flat;
 mod options;

@@ -231,7 +231,6 @@ const NAMED: [(&str, &str, &str); 17] = [
     ("tests/gpu/scale.rs", "flat", NO_RING),
     ("tests/cli_compare.rs", "quadtree", WORDS),
     ("tests/cli_compare.rs", "flat", WORDS),
-    ("tests/cli_compare.rs", "bft", WORDS),
     ("tests/cli_models.rs", "quadtree", WORDS),
     ("tests/cli_models.rs", "flat", WORDS),
     ("tests/cli_compare.rs", "bft", WORDS),

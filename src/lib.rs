@@ -88,7 +88,7 @@
 //! that holds the whole model there is one batch that uses it, and nothing to wait for.
 //!
 //! **Frames in flight** may share a surface on one queue: `cmd_prepare` waits for the shaders of earlier frames. Frames that shall overlap
-//! need a surface each. What the host writes (positions, slots) and reads (counters, captures) is not doubled: see there.
+//! need a surface each. What the host writes (positions, slots, levels, patterns) and reads (counters, captures) is not doubled: see there.
 //!
 //! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
 //! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with

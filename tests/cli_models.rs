@@ -406,3 +406,48 @@ fn tessellations_do_not_depend_on_the_ring() {
     assert!(tessellate(&["--ring-bytes", "16KiB"]) == reference);
     assert!(tessellate(&["--slots", "host"]) == reference);
 }
+
+/// Patterns and geometry shaders give the same file; 21 triangles are 21 x 4^3 at level 8, and depth tags need fewer.
+#[test]
+fn backends_and_depth_tags_are_options() {
+    if !has_device() {
+        return;
+    }
+    let (_folder, csv) = scratch("out.csv");
+    let model = [
+        "tessellate",
+        "builtin:pole-7",
+        "--scheme",
+        "loop",
+        "-o",
+        &csv,
+    ];
+    let tessellate = |more: &[&str]| {
+        let report = json(&run(&[&model, more, &["--json"][..]].concat()));
+        let file = std::fs::read(&csv).expect("it was written");
+        (number(&report["triangles"]), file)
+    };
+    let pattern = tessellate(&["--backend", "pattern"]);
+    assert_eq!(pattern.0, 21 << 6);
+    assert!(tessellate(&["--backend", "geometry"]) == pattern);
+    assert!(tessellate(&["--backend", "pattern", "--points", "device"]) == pattern);
+    for how in ["curvature:10", "screen:20", "distance:3"] {
+        let (triangles, _) = tessellate(&["--backend", "pattern", "--adaptive", how]);
+        assert!((21..pattern.0).contains(&triangles), "{how}: {triangles}");
+    }
+    let refused = |more: &[&str], wanted: &str| {
+        let words = fails(&[&model, more].concat(), 2);
+        assert!(words.contains(wanted), "{more:?}: {words}");
+    };
+    refused(&["--backend", "geometry", "--level", "33"], "--level");
+    refused(&["--adaptive", "screen:0"], "greater than 0");
+    let ring = [
+        "tessellate",
+        "builtin:cube",
+        "-o",
+        &csv,
+        "--backend",
+        "pattern",
+    ];
+    assert!(fails(&ring, 2).contains("--backend"));
+}

@@ -431,7 +431,7 @@ fn backends_and_depth_tags_are_options() {
     assert_eq!(pattern.0, 21 << 6);
     assert!(tessellate(&["--backend", "geometry"]) == pattern);
     assert!(tessellate(&["--backend", "pattern", "--points", "device"]) == pattern);
-    for how in ["curvature:10", "screen:20", "distance:3"] {
+    for how in ["curvature:10", "screen:120", "distance:1"] {
         let (triangles, _) = tessellate(&["--backend", "pattern", "--adaptive", how]);
         assert!((21..pattern.0).contains(&triangles), "{how}: {triangles}");
     }

@@ -136,6 +136,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target = Target {
         render_pass,
         samples: vk::SampleCountFlags::TYPE_1,
+        // The tugboat's funnel is open: its inside is seen.
+        cull: vk::CullModeFlags::NONE,
     };
     // SAFETY: all of one live device.
     let pipelines = unsafe {

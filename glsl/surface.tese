@@ -6,10 +6,12 @@
 #include "lib/vertex.glsl"
 
 // SPACING comes from the build: one module for equal_spacing, one for fractional_even_spacing.
+// Clockwise where v grows downwards, from the upper left as Vulkan has it (Vulkan spec, "Tessellator Vertex Winding Order"): so triangles are
+// counter-clockwise where their face is.
 #ifdef TRIANGLES
-layout(triangles, SPACING, ccw) in;
+layout(triangles, SPACING, cw) in;
 #else
-layout(quads, SPACING, ccw) in;
+layout(quads, SPACING, cw) in;
 #endif
 
 layout(location = 0) patch in uint in_patch;

@@ -76,7 +76,8 @@
 //! The library borrows device and allocator, records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
 //! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
 //!
-//! **The device** needs Vulkan 1.2 and three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`.
+//! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 17 storage
+//! buffers a stage; `gpu::Backend::Geometry` also needs `geometryShader`.
 //! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on. With `vulkanMemoryModel` also switch on `vulkanMemoryModelDeviceScope`:
 //! our shaders' atomic operations have device scope.
 //!
@@ -89,6 +90,9 @@
 //!
 //! **Frames in flight** may share a surface on one queue: `cmd_prepare` waits for the shaders of earlier frames. Frames that shall overlap
 //! need a surface each. What the host writes (positions, slots, levels, patterns) and reads (counters, captures) is not doubled: see there.
+//!
+//! **Levels.** All patches have the level of the `gpu::Cut`, unless `gpu::TessellatedSurface::write_draws` gets `method::DepthTags`: a depth for
+//! each control vertex, by distance, picture or curvature, or of your own. It is called between frames, when nothing submitted uses the surface.
 //!
 //! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
 //! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with

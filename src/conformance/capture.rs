@@ -125,6 +125,7 @@ impl Bench {
         let target = Target {
             render_pass: self.target.render_pass(),
             samples: self.target.samples(),
+            cull: vk::CullModeFlags::NONE,
         };
         let (device, layout) = (self.device.raw(), self.layout());
         // SAFETY: all of one live device.

@@ -5,6 +5,8 @@
 
 use ash::{khr, vk};
 
+use crate::gpu::layout::BINDINGS;
+
 /// Features that we use where they exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OptionalFeatures {
@@ -45,6 +47,8 @@ pub struct Support {
     pub vertex_pipeline_stores_and_atomics: bool,
     /// Buffers laid out like Rust's `#[repr(C)]`.
     pub scalar_block_layout: bool,
+    /// Storage buffers that a stage may see (`maxPerStageDescriptorStorageBuffers`): set 0 has 17, and devices need not have more than 4.
+    pub storage_buffers: u32,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
     /// Whether [`ExtraFeatures::vulkan_memory_model`] can be asked for.
@@ -60,11 +64,13 @@ impl Support {
     /// `physical` belongs to the live `instance`, which was created for Vulkan 1.2 or later.
     pub unsafe fn query(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Support {
         // SAFETY: the caller's instance and physical device, here and below.
-        let api_version = unsafe { instance.get_physical_device_properties(physical) }.api_version;
+        let properties = unsafe { instance.get_physical_device_properties(physical) };
+        let api_version = properties.api_version;
         // SAFETY: as above.
         let queues = unsafe { instance.get_physical_device_queue_family_properties(physical) };
         let mut support = Support {
             api_version,
+            storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
             graphics_family: queues
                 .iter()
                 .position(|family| {
@@ -104,6 +110,10 @@ impl Support {
             (
                 self.scalar_block_layout,
                 "scalar buffer layout (scalarBlockLayout)".into(),
+            ),
+            (
+                self.storage_buffers >= BINDINGS,
+                format!("{BINDINGS} storage buffers a stage (maxPerStageDescriptorStorageBuffers)"),
             ),
         ];
         let lacking = needs.into_iter().filter(|(met, _)| !met);
@@ -254,6 +264,7 @@ mod tests {
             tessellation_shader: true,
             vertex_pipeline_stores_and_atomics: true,
             scalar_block_layout: true,
+            storage_buffers: BINDINGS,
             ..Support::default()
         }
     }
@@ -275,7 +286,7 @@ mod tests {
         assert_eq!(words.len(), 3);
         assert_eq!(words[0], "Vulkan 1.2 (it has 1.1)");
         assert!(words[2].contains("scalarBlockLayout"));
-        assert_eq!(Support::default().missing().len(), 5);
+        assert_eq!(Support::default().missing().len(), 6);
     }
 
     #[test]

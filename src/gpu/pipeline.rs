@@ -15,6 +15,8 @@ pub struct Target {
     pub render_pass: vk::RenderPass,
     /// Its samples a pixel.
     pub samples: vk::SampleCountFlags,
+    /// Which triangles are left out. The front of a surface is where its faces are counter-clockwise, whoever cuts them.
+    pub cull: vk::CullModeFlags,
 }
 
 /// What becomes of the triangles.
@@ -253,7 +255,8 @@ impl PipelinePlan {
                 vk::PolygonMode::FILL
             })
             .rasterizer_discard_enable(self.fill == Fill::Discard)
-            .cull_mode(vk::CullModeFlags::NONE)
+            .cull_mode(self.target.cull)
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .depth_bias_enable(lines)
             .depth_bias_constant_factor(if lines { -1.0 } else { 0.0 })
             .depth_bias_slope_factor(if lines { -1.0 } else { 0.0 })

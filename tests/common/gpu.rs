@@ -1,6 +1,6 @@
 //! A model on whatever Vulkan device there is, drawn and captured through the library's public interface.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
 use ash::vk;
@@ -19,8 +19,14 @@ use hullform::{Error, Result};
 /// The side of the picture that everything is drawn into.
 pub const SIDE: u32 = 64;
 
-/// What pipelines depend on here: the shaders of the passes, who cuts, spacing, and what becomes of the triangles.
-type PipelineKey = (Vec<&'static str>, Backend, Spacing, &'static str);
+/// What pipelines depend on here: the shaders of the passes, who cuts, spacing, what becomes of the triangles and which are left out.
+type PipelineKey = (
+    Vec<&'static str>,
+    Backend,
+    Spacing,
+    &'static str,
+    vk::CullModeFlags,
+);
 
 /// A validated device with all that surfaces share. [`Gpu::finish`] ends it.
 pub struct Gpu {
@@ -29,6 +35,8 @@ pub struct Gpu {
     layout: Option<Layout>,
     target: Option<OffscreenTarget>,
     pipelines: RefCell<HashMap<PipelineKey, Pipelines>>,
+    /// What pipelines that are built from now on leave out.
+    pub cull: Cell<vk::CullModeFlags>,
 }
 
 impl Gpu {
@@ -53,6 +61,7 @@ impl Gpu {
             device,
             layout: Some(layout),
             pipelines: RefCell::default(),
+            cull: Cell::new(vk::CullModeFlags::NONE),
         })
     }
 
@@ -139,11 +148,12 @@ impl Gpu {
         };
         let mut all = self.pipelines.borrow_mut();
         let pipelines = all
-            .entry((shaders, backend, spacing, fill_name))
+            .entry((shaders, backend, spacing, fill_name, self.cull.get()))
             .or_insert_with(|| {
                 let target = Target {
                     render_pass: self.target().render_pass(),
                     samples: self.target().samples(),
+                    cull: self.cull.get(),
                 };
                 let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
                 // SAFETY: all of one live device.

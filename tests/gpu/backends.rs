@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use ash::vk;
 use glam::Vec3;
 use hullform::conformance::backends::Drawn;
 use hullform::conformance::{Context, Settings};
@@ -104,6 +105,40 @@ fn pictures_of_all_backends_are_alike() {
             );
         }
         assert!(pictures[0].chunks(4).any(|pixel| pixel[3] > 0));
+    }
+    gpu.finish();
+}
+
+/// Of a closed surface one sees the front alone.
+#[test]
+fn the_front_is_where_faces_are_counter_clockwise() {
+    let Some(gpu) = Gpu::open() else { return };
+    let cut = cut(8.0, Spacing::Equal);
+    for name in ["cube", "ngons"] {
+        let model = shapes::built_in(name);
+        for backend in Backend::ALL {
+            for (method, prepared) in drawable(&model, backend) {
+                let [all, front, back] = [
+                    vk::CullModeFlags::NONE,
+                    vk::CullModeFlags::BACK,
+                    vk::CullModeFlags::FRONT,
+                ]
+                .map(|cull| {
+                    gpu.cull.set(cull);
+                    let mut loaded = load(&gpu, &model, prepared.clone(), backend, cut);
+                    loaded.capture(cut, Fill::Solid).expect("it is drawn");
+                    loaded.pixels()
+                });
+                let differing = |a: &[u8], b: &[u8]| {
+                    let pairs = a.chunks(4).zip(b.chunks(4));
+                    pairs.filter(|(a, b)| a != b).count()
+                };
+                let drawn = all.chunks(4).filter(|pixel| pixel[3] > 0).count();
+                let what = format!("{name} {} {backend:?}", method.name);
+                assert!(differing(&all, &front) * 50 < drawn, "{what}");
+                assert!(differing(&all, &back) * 2 > drawn, "{what}");
+            }
+        }
     }
     gpu.finish();
 }

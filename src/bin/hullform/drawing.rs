@@ -175,6 +175,7 @@ impl<'a> Drawing<'a> {
         let target = Target {
             render_pass: target.render_pass(),
             samples: target.samples(),
+            cull: vk::CullModeFlags::NONE,
         };
         // SAFETY: all of one live device.
         unsafe {

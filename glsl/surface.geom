@@ -11,7 +11,7 @@ out gl_PerVertex { vec4 gl_Position; };
 #include "lib/vertex.glsl"
 
 layout(points, invocations = GEOMETRY_ROWS) in;
-layout(triangle_strip, max_vertices = 66) out;
+layout(triangle_strip, max_vertices = 2 * GEOMETRY_ROWS + 2) out;
 
 layout(location = 0) flat in uint in_patch[];
 
@@ -50,8 +50,7 @@ void emit(Patch record, Levels levels, uint n, uvec2 at) {
 void main() {
     Patch record = patch_record(in_patch[0]);
     Levels levels = patch_levels(in_patch[0], record);
-    // The lattice of the finest edge. Of a triangle the last edge counts twice.
-    uint n = uint(max(max(levels.edges.x, levels.edges.y), max(levels.edges.z, max(levels.edges.w, levels.inside))));
+    uint n = uint(greatest_level(levels));
     uint row = uint(gl_InvocationID);
     if (row >= n) return;
     fit_patch(record);

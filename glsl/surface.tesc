@@ -21,7 +21,7 @@ layout(location = 2) out vec3 out_point[];
 void main() {
     uint number = in_patch[0];
     Patch record = patch_record(number);
-    Levels levels = patch_levels(min(number, frame.end_patch - 1u), record);
+    Levels levels = patch_levels(number, record);
     bool drawn = number < frame.end_patch;
 #ifdef SCRATCH_RING
     uint level = required_level(levels);

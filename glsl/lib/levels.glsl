@@ -15,7 +15,10 @@ struct Levels {
 // Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge, so that both have a vertex in the middle and all
 // vertices line up: 2k and k with equal spacing, 4k and 2k with fractional-even (Brainerd et al. 2016, section 7.2).
 Levels patch_levels(uint number, Patch record) {
-    if ((frame.flags & FRAME_ADAPTIVE) != 0u) return Levels(draws[number].edges, draws[number].inside);
+    if ((frame.flags & FRAME_ADAPTIVE) != 0u) {
+        PatchDraw draw = draws[min(number, frame.end_patch - 1u)];
+        return Levels(draw.edges, draw.inside);
+    }
     float level = clamp(frame.level, 1.0, 64.0);
     bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
     precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
@@ -28,9 +31,13 @@ Levels patch_levels(uint number, Patch record) {
     return Levels(edges, level);
 }
 
+float greatest_level(Levels levels) {
+    return max(levels.inside, max(max(levels.edges.x, levels.edges.y), max(levels.edges.z, levels.edges.w)));
+}
+
 // The level that stencils are needed for: ceil(log2 of the greatest factor).
 uint required_level(Levels levels) {
-    float greatest = max(levels.inside, max(max(levels.edges.x, levels.edges.y), max(levels.edges.z, levels.edges.w)));
+    float greatest = greatest_level(levels);
     uint level = 0u;
     while (level < HIGHEST_LEVEL && float(1u << level) < greatest) ++level;
     return level;

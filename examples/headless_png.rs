@@ -138,6 +138,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         samples: vk::SampleCountFlags::TYPE_1,
         // The tugboat's funnel is open: its inside is seen.
         cull: vk::CullModeFlags::NONE,
+        compare: vk::CompareOp::LESS_OR_EQUAL,
     };
     // SAFETY: all of one live device.
     let pipelines = unsafe {

@@ -2,6 +2,8 @@
 
 // Triangles that the host has already projected and coloured: maps of a number over a surface.
 
+invariant gl_Position;
+
 layout(location = 0) in vec4 in_clip;
 layout(location = 1) in vec4 in_colour;
 

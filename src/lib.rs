@@ -96,7 +96,8 @@
 //!
 //! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
 //! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with
-//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Set 0 and the first 124 bytes of push constants are the library's.
+//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Set 0 is the library's, and so are all push
+//! constants: their one range is `gpu::Layout::push_constant_range`, which shows how to make a layout with further sets.
 //!
 //! **Skinning and morphing.** Positions are read in one function, `control_vertex` in `glsl/lib/control_vertex.glsl`. Put your own in its
 //! place: plans do not depend on positions. Or write deformed positions into `gpu::TessellatedSurface::position_buffer` with a compute

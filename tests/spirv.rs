@@ -272,3 +272,50 @@ fn every_instruction_that_may_be_contracted_is_noticed() {
         free.len()
     );
 }
+
+/// Without it a pre-pass that is compared with EQUAL is luck (SPIR-V, Invariant; Vulkan spec, "Invariance").
+#[test]
+fn every_position_is_invariant() {
+    const MEMBER_DECORATE: u32 = 72;
+    const DECORATE: u32 = 71;
+    const TYPE_POINTER: u32 = 32;
+    const VARIABLE: u32 = 59;
+    const OUTPUT: u32 = 3;
+    const INVARIANT: u32 = 18;
+    const POSITION: [u32; 2] = [11, 0];
+    let mut stages = BTreeSet::new();
+    let ours = MODULES
+        .iter()
+        .filter(|(name, _)| !name.starts_with("conformance."));
+    for (name, bytes) in ours {
+        let all = instructions(bytes);
+        let decorated = |target: &[u32], decoration: &[u32]| {
+            all.iter().any(|words| {
+                matches!(words[0] & 0xffff, DECORATE | MEMBER_DECORATE)
+                    && words[1..].starts_with(target)
+                    && words[1 + target.len()..] == *decoration
+            })
+        };
+        let outputs = all
+            .iter()
+            .filter(|words| words[0] & 0xffff == VARIABLE && words[3] == OUTPUT);
+        for variable in outputs {
+            let pointer = all
+                .iter()
+                .find(|words| words[0] & 0xffff == TYPE_POINTER && words[1] == variable[1]);
+            let block = pointer.expect("a variable is a pointer")[3];
+            // A variable by itself, or the first member of the block of built-ins.
+            let (single, member) = ([variable[2]], [block, 0]);
+            let writes = |target: &[u32]| decorated(target, &POSITION);
+            let invariant = |target: &[u32]| decorated(target, &[INVARIANT]);
+            if writes(&single) || writes(&member) {
+                assert!(
+                    invariant(&single) || invariant(&member),
+                    "{name}: gl_Position is not invariant"
+                );
+                stages.insert(name.rsplit('.').next().expect("it has an ending"));
+            }
+        }
+    }
+    assert_eq!(stages, BTreeSet::from(["geom", "tese", "vert"]));
+}

@@ -5,6 +5,10 @@
 #include "lib/displacement.glsl"
 #include "lib/interface.glsl"
 
+// Pipelines that evaluate with these functions and differ in their fragment shaders or targets draw the same depths: a pre-pass may be
+// compared with EQUAL (GLSL 4.60, section 4.8.1; SPIR-V, Invariant).
+invariant gl_Position;
+
 layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec2 out_uv;

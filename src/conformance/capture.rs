@@ -126,6 +126,7 @@ impl Bench {
             render_pass: self.target.render_pass(),
             samples: self.target.samples(),
             cull: vk::CullModeFlags::NONE,
+            compare: vk::CompareOp::LESS_OR_EQUAL,
         };
         let (device, layout) = (self.device.raw(), self.layout());
         // SAFETY: all of one live device.

@@ -46,9 +46,7 @@ impl Layout {
         let set = unsafe { device.create_descriptor_set_layout(&info, None) }
             .map_err(failed("vkCreateDescriptorSetLayout"))?;
         let sets = [set];
-        let constants = [vk::PushConstantRange::default()
-            .stage_flags(STAGES)
-            .size(size_of::<abi::Frame>() as u32)];
+        let constants = [Layout::push_constant_range()];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&sets)
             .push_constant_ranges(&constants);
@@ -61,6 +59,37 @@ impl Layout {
                 Err(failed("vkCreatePipelineLayout")(code))
             }
         }
+    }
+
+    /// The one range of push constants: an [`abi::Frame`], seen by all stages.
+    ///
+    /// A pipeline layout of an engine's own has this range and no other: [`cmd_draw`](super::TessellatedSurface::cmd_draw) pushes through
+    /// [`Layout::pipeline`], which is compatible only with identical ranges (Vulkan spec, "Pipeline Layout Compatibility"), and a stage may
+    /// have a single one (VUID-VkPipelineLayoutCreateInfo-pPushConstantRanges-00292). What else the engine's shaders need goes into sets of
+    /// its own, from 1 on.
+    ///
+    /// ```no_run
+    /// use hullform::ash::{self, prelude::VkResult, vk};
+    /// use hullform::gpu::Layout;
+    ///
+    /// /// The layout for pipelines that `Pipelines::from_raw` takes, with a set of the engine's own.
+    /// fn engine_layout(
+    ///     device: &ash::Device,
+    ///     hullform: &Layout,
+    ///     own: vk::DescriptorSetLayout,
+    /// ) -> VkResult<vk::PipelineLayout> {
+    ///     let (sets, ranges) = ([hullform.set(), own], [Layout::push_constant_range()]);
+    ///     let info = vk::PipelineLayoutCreateInfo::default()
+    ///         .set_layouts(&sets)
+    ///         .push_constant_ranges(&ranges);
+    ///     // SAFETY: device and layouts are live and belong together.
+    ///     unsafe { device.create_pipeline_layout(&info, None) }
+    /// }
+    /// ```
+    pub fn push_constant_range() -> vk::PushConstantRange {
+        vk::PushConstantRange::default()
+            .stage_flags(STAGES)
+            .size(size_of::<abi::Frame>() as u32)
     }
 
     /// The layout of set 0.

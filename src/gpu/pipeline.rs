@@ -17,6 +17,10 @@ pub struct Target {
     pub samples: vk::SampleCountFlags,
     /// Which triangles are left out. The front of a surface is where its faces are counter-clockwise, whoever cuts them.
     pub cull: vk::CullModeFlags,
+    /// How depths are compared; what passes is written. `LESS_OR_EQUAL` for pictures as they come. After a pre-pass `EQUAL`, which is exact: our
+    /// shaders' positions are `invariant`, so all pipelines of one backend and spacing have the same depths. For reversed depths
+    /// `GREATER_OR_EQUAL`.
+    pub compare: vk::CompareOp,
 }
 
 /// What becomes of the triangles.
@@ -26,6 +30,8 @@ pub enum Fill {
     Solid,
     /// Their edges are drawn, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
     Lines,
+    /// Their depths alone count: there is no fragment shader and no colour. For pre-passes and shadow maps.
+    Depth,
     /// Nothing: only what is captured counts.
     Discard,
 }
@@ -85,7 +91,7 @@ impl Pipelines {
     /// # Safety
     /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
     /// surface's backend draws. Its layout is
-    /// compatible with [`Layout::pipeline`] for set 0 and has the same push constants; further sets are the engine's. Its stages read
+    /// compatible with [`Layout::pipeline`] for set 0 and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
     /// `abi::Frame` and set 0 as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
     pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>) -> Pipelines {
         Pipelines { pipelines }
@@ -130,8 +136,8 @@ fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Resu
             (Stage::GEOMETRY, format!("{method}.geom")),
         ],
     };
-    // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours).
-    if fill != Fill::Discard {
+    // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours); depths need none.
+    if matches!(fill, Fill::Solid | Fill::Lines) {
         stages.push((Stage::FRAGMENT, format!("{method}.frag")));
     }
     let found = stages.into_iter().map(|(stage, name)| {
@@ -219,9 +225,14 @@ impl PipelinePlan {
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(true)
-            .depth_compare_op(vk::CompareOp::LESS_OR_EQUAL);
-        let colour = [vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA)];
+            .depth_compare_op(self.target.compare);
+        // Without a fragment shader colours are undefined (Vulkan spec, "Fragment Output Interface").
+        let written = match self.fill {
+            Fill::Depth => vk::ColorComponentFlags::empty(),
+            _ => vk::ColorComponentFlags::RGBA,
+        };
+        let colour =
+            [vk::PipelineColorBlendAttachmentState::default().color_write_mask(written)];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colour);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);

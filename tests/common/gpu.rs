@@ -131,6 +131,38 @@ impl Gpu {
         self.target.as_ref().expect("there until it is finished")
     }
 
+    /// Pipelines that the caller destroys.
+    pub fn build(
+        &self,
+        prepared: &Prepared,
+        backend: Backend,
+        spacing: Spacing,
+        fill: Fill,
+        compare: vk::CompareOp,
+    ) -> Pipelines {
+        let target = Target {
+            render_pass: self.target().render_pass(),
+            samples: self.target().samples(),
+            cull: self.cull.get(),
+            compare,
+        };
+        let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
+        // SAFETY: all of one live device.
+        let built = unsafe {
+            Pipelines::new(
+                device,
+                self.layout(),
+                cache,
+                prepared,
+                target,
+                backend,
+                spacing,
+                fill,
+            )
+        };
+        built.expect("the shipped modules make pipelines")
+    }
+
     /// Lets `use_them` use the pipelines for a prepared model, which are built once.
     fn with_pipelines<T>(
         &self,
@@ -144,32 +176,15 @@ impl Gpu {
         let fill_name = match fill {
             Fill::Solid => "solid",
             Fill::Lines => "lines",
+            Fill::Depth => "depth",
             Fill::Discard => "discard",
         };
         let mut all = self.pipelines.borrow_mut();
         let pipelines = all
             .entry((shaders, backend, spacing, fill_name, self.cull.get()))
             .or_insert_with(|| {
-                let target = Target {
-                    render_pass: self.target().render_pass(),
-                    samples: self.target().samples(),
-                    cull: self.cull.get(),
-                };
-                let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
-                // SAFETY: all of one live device.
-                let built = unsafe {
-                    Pipelines::new(
-                        device,
-                        self.layout(),
-                        cache,
-                        prepared,
-                        target,
-                        backend,
-                        spacing,
-                        fill,
-                    )
-                };
-                built.expect("the shipped modules make pipelines")
+                let compare = vk::CompareOp::LESS_OR_EQUAL;
+                self.build(prepared, backend, spacing, fill, compare)
             });
         use_them(pipelines)
     }
@@ -336,6 +351,37 @@ impl Loaded<'_> {
             counters: self.surface().counters(),
             statistics: query.map(|query| query.read()).transpose()?,
         })
+    }
+
+    /// Draws with some pipelines after the other into one picture, each time all batches of a cut, the next ones displaced.
+    pub fn draw_over(&self, cut: Cut, all: &[(&Pipelines, Displacement)]) -> Vec<u8> {
+        let gpu = self.gpu;
+        let device = gpu.device.raw();
+        let mut batches = self.surface().batches(cut).expect("they fit");
+        // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+        let drawn = gpu.device.submit(|cmd| unsafe {
+            self.surface().cmd_prepare(device, cmd);
+            gpu.target().begin(cmd, [0.0; 4]);
+            for &(pipelines, displacement) in all {
+                let view = View {
+                    displacement,
+                    ..self.view()
+                };
+                for batch in &batches {
+                    let (surface, layout) = (self.surface(), gpu.layout());
+                    surface.cmd_draw(device, cmd, layout, pipelines, &view, cut, batch);
+                }
+                batches = batches
+                    .iter()
+                    .map(|batch| self.surface().again(batch))
+                    .collect();
+            }
+            gpu.target().end(cmd);
+            gpu.target().cmd_copy_to_host(cmd);
+            Ok(())
+        });
+        drawn.expect("it is executed");
+        self.pixels()
     }
 
     /// # Safety

@@ -11,6 +11,7 @@ mod edges;
 mod hexagon;
 mod points;
 mod precision;
+mod prepass;
 mod ring;
 mod scale;
 mod shapes;

@@ -176,6 +176,7 @@ impl<'a> Drawing<'a> {
             render_pass: target.render_pass(),
             samples: target.samples(),
             cull: vk::CullModeFlags::NONE,
+            compare: vk::CompareOp::LESS_OR_EQUAL,
         };
         // SAFETY: all of one live device.
         unsafe {

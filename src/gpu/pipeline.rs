@@ -231,8 +231,7 @@ impl PipelinePlan {
             Fill::Depth => vk::ColorComponentFlags::empty(),
             _ => vk::ColorComponentFlags::RGBA,
         };
-        let colour =
-            [vk::PipelineColorBlendAttachmentState::default().color_write_mask(written)];
+        let colour = [vk::PipelineColorBlendAttachmentState::default().color_write_mask(written)];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colour);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);

@@ -69,7 +69,7 @@ fn a_picture_after_a_pre_pass_is_the_picture() {
     }
     check(&gpu, METHODS[0].name, Backend::Tessellator, SPACINGS[1]);
     let geometry = gpu.device.info().support.optional.geometry_shader;
-    let without_ring = METHODS.iter().rev().next().expect("there are methods");
+    let without_ring = METHODS.last().expect("there are methods");
     for backend in [Backend::Pattern, Backend::Geometry] {
         if backend != Backend::Geometry || geometry {
             check(&gpu, without_ring.name, backend, SPACINGS[0]);

@@ -57,7 +57,7 @@
 //! # Ok::<(), hullform::Error>(())
 //! ```
 //!
-//! `examples/evaluate_limit.rs` asks for single points; `examples/headless_png.rs` is the integration guide, from the instance to the
+//! The [`manual`] says all of it in words. `examples/evaluate_limit.rs` asks for single points; `examples/headless_png.rs` is the integration guide, from the instance to the
 //! picture.
 //!
 //! # Features
@@ -111,6 +111,7 @@ pub mod error;
 pub mod gpu;
 #[cfg(feature = "host")]
 pub mod host;
+pub mod manual;
 pub mod mesh;
 pub mod method;
 pub mod patch;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hullform::method::METHODS;
 
 /// From the ground up. A room may use those before it.
-const ROOMS: [&str; 11] = [
+const ROOMS: [&str; 12] = [
     "abi",
     "error",
     "mesh",
@@ -17,6 +17,7 @@ const ROOMS: [&str; 11] = [
     "gpu",
     "host",
     "conformance",
+    "manual",
 ];
 
 /// The last room that knows nothing of Vulkan and has no unsafe code.

@@ -1,7 +1,7 @@
 //! Surface methods: how each prepares a model for the GPU, and how its evaluation reads as a CPU twin.
 //!
 //! A method is one file here, one or more in `glsl/method`, and one row of [`METHODS`]. Command line, documentation and tests go over the
-//! rows; nothing else names a method. [`choosing`] tells what each is good for.
+//! rows; nothing else names a method. [The manual](crate::manual::choosing) tells what each is good for.
 //!
 //! # Adding a method
 //!
@@ -43,11 +43,9 @@
 //! **What holds it**, without a line of its own: the device against the twin, the counts of vertices, points from the device against those of the
 //! host (`tests/gpu`), the contract and the bits on shared edges (`hullform verify`), `NoContraction` and layouts read off the SPIR-V, the files
 //! (`tests/architecture.rs`). What its paper claims needs tests of its own, in `src/method/name/tests.rs`. Then make its modules with
-//! `scripts/update-spirv`, its pictures as `tests/pictures.rs` says, and its lines in the README.
+//! `scripts/update-spirv`, its pictures as `tests/pictures.rs` says, and its lines in [the manual](crate::manual).
 
 mod bft;
-#[doc = include_str!("choosing.md")]
-pub mod choosing {}
 mod displacement;
 mod flat;
 mod options;

@@ -7,6 +7,8 @@ mod compare;
 mod devices;
 mod drawing;
 mod gpu;
+#[cfg(test)]
+mod manual;
 mod model;
 mod options;
 mod output;

@@ -15,7 +15,7 @@ use crate::method::{METHODS, MethodOptions, TableNormals, TableOptions};
 use crate::plan::PlanOptions;
 
 const RULE: &str = "on every edge and spoke all faces have the same vertices, and there and at every vertex the same bits of position and normal";
-const SOURCE: &str = "README, Edges and corners; Vulkan, Tessellation Invariance, rules 5 and 6; SPIR-V, NoContraction";
+const SOURCE: &str = "manual, Edges and corners; Vulkan, Tessellation Invariance, rules 5 and 6; SPIR-V, NoContraction";
 
 /// A case for a mesh that is made when it runs.
 fn case(

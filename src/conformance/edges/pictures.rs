@@ -19,7 +19,7 @@ use crate::mesh::{ControlMesh, Model, builtin};
 use crate::method::Prepared;
 
 const RULE: &str = "a surface whose border lies outside of the picture leaves no pixel of it empty, wherever bits of positions move its vertices";
-const SOURCE: &str = "VK-GL-CTS, tessellation, common edges; README, Edges and corners";
+const SOURCE: &str = "VK-GL-CTS, tessellation, common edges; manual, Edges and corners";
 
 /// A surface, and the part of it that the picture shows.
 struct Scene {

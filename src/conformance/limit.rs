@@ -302,7 +302,7 @@ fn places() -> impl Iterator<Item = Case> {
 fn measure(context: &Context, model: &Model, setup: Setup) -> Result<Finding> {
     let method = match setup.method {
         Some(name) => method(name)?,
-        None => method_for(model.mesh().options().scheme),
+        None => method_for(model),
     };
     let prepared = method.prepare(model, setup.options)?;
     let passes = prepared.clone();

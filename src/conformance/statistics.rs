@@ -88,12 +88,7 @@ fn model_cases(name: &str) -> Vec<Case> {
                 let (_, model) =
                     found.ok_or_else(|| Error::Refused(format!("there is no {model}")))?;
                 let cuts = [1.0, 3.0, 8.0].map(|level| cut(level, spacing));
-                predicted(
-                    context,
-                    model,
-                    method_for(model.mesh().options().scheme).name,
-                    &cuts,
-                )
+                predicted(context, model, method_for(model).name, &cuts)
             })
         })
         .into()

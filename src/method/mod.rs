@@ -8,8 +8,8 @@
 //! A method `name` is `src/method/name.rs` with what it needs in `src/method/name/`, `glsl/method/name.glsl`, one more
 //! `glsl/method/name_something.glsl` for each further set of shaders, and a row. The build compiles every file of `glsl/method`.
 //!
-//! **The row** is a [`Method`] in [`METHODS`]. Its place counts: the first that does a scheme draws it when nobody names a method. [`Contract`]
-//! says which surface it draws and how near; tests hold it to that. `covers` refuses meshes that the method cannot draw, by a face, edge or
+//! **The row** is a [`Method`] in [`METHODS`]. [`Contract`] says which surface it draws
+//! and how near, which also decides whether it draws a model when nobody names a method; tests hold it to that. `covers` refuses meshes that the method cannot draw, by a face, edge or
 //! vertex; refuse rather than draw another surface. `prepare` returns [`Prepared`]: a [`Pass`] for each set of shaders, without those that have no
 //! patches. A pass has one [`Domain`] and names its shader. Faces come from `patches::parts`, with their flags and texture coordinates.
 //!
@@ -92,6 +92,27 @@ pub enum Reproduces {
     Faces(f64),
     /// A surface of its own that looks like the limit.
     Itself,
+}
+
+impl Reproduces {
+    /// Whether what is drawn is the limit of a scheme, apart from what triangles leave out between their vertices.
+    pub fn is_limit(self, scheme: Scheme) -> bool {
+        match self {
+            Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => true,
+            Reproduces::Faces(_) => scheme == Scheme::Bilinear,
+            Reproduces::LimitOnHexagon(_) | Reproduces::Itself => false,
+        }
+    }
+
+    /// How far in kind a surface is from the limit.
+    fn remoteness(self) -> u32 {
+        match self {
+            Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => 0,
+            Reproduces::LimitOnHexagon(_) => 1,
+            Reproduces::Itself => 2,
+            Reproduces::Faces(_) => 3,
+        }
+    }
 }
 
 /// What a method promises.
@@ -194,10 +215,24 @@ pub const METHODS: &[Method] = &[
     flat::METHOD,
 ];
 
-/// The method that a scheme is drawn by when nobody names one: the first in the table that does it.
-pub fn method_for(scheme: Scheme) -> &'static Method {
-    let mut able = METHODS.iter().filter(|method| method.check(scheme).is_ok());
-    able.next().expect("flat does every scheme")
+/// The method that draws a model when nobody names one: of those that can, one that draws the limit, else one whose surface is nearest to it in
+/// kind, and among equals the first in the table.
+pub fn method_for(model: &Model) -> &'static Method {
+    nearest(model, METHODS.iter())
+}
+
+/// The way out when a method refuses a model: what draws it when that one does not.
+fn instead_of(refusing: &str, model: &Model) -> &'static Method {
+    nearest(
+        model,
+        METHODS.iter().filter(|method| method.name != refusing),
+    )
+}
+
+fn nearest(model: &Model, methods: impl Iterator<Item = &'static Method>) -> &'static Method {
+    let able = methods.filter(|method| method.check_model(model).is_ok());
+    let nearest = able.min_by_key(|method| method.contract.reproduces.remoteness());
+    nearest.expect("the baseline draws every model, and refuses none")
 }
 
 /// The method of a name.

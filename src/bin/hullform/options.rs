@@ -167,7 +167,7 @@ impl From<Triangulate> for hullform::mesh::Triangulation {
 /// How a surface is cut up: options that `render` and `tessellate` share.
 #[derive(Args)]
 pub struct Cut {
-    /// Surface method [default: the first that draws the model's scheme]
+    /// Surface method [default: one that draws the model's limit, else one that comes near]
     #[arg(long, value_name = "NAME")]
     method: Option<String>,
     #[command(flatten)]
@@ -316,13 +316,21 @@ impl From<Backend> for hullform::gpu::Backend {
 }
 
 impl Cut {
-    /// The method that is asked for, or else draws a scheme, with its options.
-    pub fn chosen(&self, scheme: Scheme) -> hullform::Result<Chosen> {
+    /// Refuses a method that does not do a scheme, before anything is made.
+    pub fn check(&self, scheme: Scheme) -> hullform::Result<()> {
+        match &self.method {
+            None => Ok(()),
+            Some(name) => method(name)?.check(scheme),
+        }
+    }
+
+    /// The method that is asked for, or else draws a model, with its options.
+    pub fn chosen(&self, model: &Model) -> hullform::Result<Chosen> {
         let method = match &self.method {
-            None => method_for(scheme),
+            None => method_for(model),
             Some(name) => method(name)?,
         };
-        method.check(scheme)?;
+        method.check(model.mesh().options().scheme)?;
         let options = self.tables.options(&[method])?;
         Ok(Chosen { method, options })
     }

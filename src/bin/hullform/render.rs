@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     Format::of(&arguments.output, &[Format::Png])?;
     let started = Instant::now();
     let mesh = model::load(arguments.model.as_deref(), &arguments.shape)?;
-    arguments.cut.chosen(mesh.options().scheme)?;
+    arguments.cut.check(mesh.options().scheme)?;
     let model = Model::new(mesh);
     let load_seconds = started.elapsed().as_secs_f64();
     let picture = Pending::create(&arguments.output)?;
@@ -134,7 +134,7 @@ fn draw_picture(
     let (target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
-        chosen: arguments.cut.chosen(model.mesh().options().scheme)?,
+        chosen: arguments.cut.chosen(model)?,
         cutting: arguments.cut.cutting(),
         sight: Sight::Framed(arguments.sight.camera, arguments.size),
         shading: arguments.shading,

@@ -32,7 +32,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let format = Format::of(&arguments.output, &[Format::Csv, Format::Obj, Format::Ply])?;
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
-    let chosen = arguments.cut.chosen(model.mesh().options().scheme)?;
+    let chosen = arguments.cut.chosen(&model)?;
     let file = Pending::create(&arguments.output)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {

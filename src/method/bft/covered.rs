@@ -6,7 +6,7 @@
 use crate::error::{Error, Place, Result};
 use crate::mesh::Model;
 use crate::mesh::sharpness::{is_infinite, is_sharp};
-use crate::method::method_for;
+use crate::method::instead_of;
 
 /// Refuses creases, sharp vertices that are no corners of the boundary, edges of more than two faces, and vertices where several fans meet.
 ///
@@ -77,9 +77,9 @@ fn check_vertex(model: &Model, vertex: u32) -> Result<()> {
     Ok(())
 }
 
-/// The error, with the method that draws the scheme by default as the way out.
+/// The error, with what draws the model instead as the way out.
 fn refused(model: &Model, place: Place, problem: &str, remedy: &str) -> Error {
-    let other = method_for(model.mesh().options().scheme).name;
+    let other = instead_of("bft", model).name;
     Error::Input {
         place,
         problem: format!("it {problem}, and the method bft has no table for that"),

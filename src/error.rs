@@ -61,6 +61,14 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A file was there to be written, and then could not be: the disk is full, or the reader has gone.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// An option has a value outside its range or vocabulary.
     #[error("{option}: {problem}; {remedy}")]
     Option {
@@ -102,7 +110,7 @@ impl Error {
         match self {
             Error::Input { .. } | Error::File { .. } | Error::Option { .. } => 2,
             Error::NoDevice(_) => 3,
-            Error::Vulkan { .. } | Error::Refused(_) => 1,
+            Error::Vulkan { .. } | Error::Refused(_) | Error::Write { .. } => 1,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -16,6 +16,9 @@ const START: Duration = Duration::from_secs(60);
 
 /// How long the end of a worker may take whose input is closed.
 const PATIENCE: Duration = Duration::from_secs(2);
+
+/// How long a wait lasts before somebody looks whether it is still wanted.
+const GLANCE: Duration = Duration::from_millis(50);
 
 /// What is kept of the last that a worker said, in bytes.
 const LAST_WORDS: usize = 4096;
@@ -44,15 +47,22 @@ pub struct Runner<'a> {
 impl Runner<'_> {
     /// Runs all cases; `done` hears of each result as it comes, and the report has them in the cases' order.
     ///
+    /// Once another thread sets `stop`, no case begins, those that run are ended with their workers, and the report has what was done.
+    ///
     /// # Errors
     /// When no worker can be started at all.
-    pub fn run(&self, cases: &[Case], mut done: impl FnMut(&CaseResult)) -> io::Result<Report> {
+    pub fn run(
+        &self,
+        cases: &[Case],
+        stop: &AtomicBool,
+        mut done: impl FnMut(&CaseResult),
+    ) -> io::Result<Report> {
         let next = AtomicUsize::new(0);
         let (sender, results) = mpsc::channel();
         thread::scope(|scope| {
             for _ in 0..self.options.jobs.max(1) {
                 let (sender, next) = (sender.clone(), &next);
-                scope.spawn(move || self.take_cases(cases, next, &sender));
+                scope.spawn(move || self.take_cases(cases, next, stop, &sender));
             }
             drop(sender);
             let mut report: Vec<Option<CaseResult>> = vec![None; cases.len()];
@@ -61,9 +71,8 @@ impl Runner<'_> {
                 done(&result);
                 report[place] = Some(result);
             }
-            let complete: Option<Vec<CaseResult>> = report.into_iter().collect();
             Ok(Report {
-                results: complete.expect("every case that is taken is answered"),
+                results: report.into_iter().flatten().collect(),
             })
         })
     }
@@ -73,13 +82,16 @@ impl Runner<'_> {
         &self,
         cases: &[Case],
         next: &AtomicUsize,
+        stop: &AtomicBool,
         results: &mpsc::Sender<(usize, io::Result<CaseResult>)>,
     ) {
         let mut worker = None;
         loop {
             let place = next.fetch_add(1, Ordering::Relaxed);
             let Some(case) = cases.get(place) else { return };
-            let result = self.repeated(case, &mut worker);
+            let Some(result) = self.repeated(case, stop, &mut worker).transpose() else {
+                return;
+            };
             let failed = result.is_err();
             if results.send((place, result)).is_err() || failed {
                 next.store(cases.len(), Ordering::Relaxed);
@@ -88,12 +100,19 @@ impl Runner<'_> {
         }
     }
 
-    /// Runs a case as often as asked.
-    fn repeated(&self, case: &Case, worker: &mut Option<Worker>) -> io::Result<CaseResult> {
+    /// Runs a case as often as asked; None if it was stopped.
+    fn repeated(
+        &self,
+        case: &Case,
+        stop: &AtomicBool,
+        worker: &mut Option<Worker>,
+    ) -> io::Result<Option<CaseResult>> {
         let started = Instant::now();
         let mut findings: Vec<Finding> = Vec::new();
         for run in 0..self.options.repeat.max(1) {
-            let finding = self.once(case, run, worker)?;
+            let Some(finding) = self.once(case, run, stop, worker)? else {
+                return Ok(None);
+            };
             let lost = matches!(finding.status, Status::Crash | Status::Timeout);
             findings.push(finding);
             if lost {
@@ -102,43 +121,53 @@ impl Runner<'_> {
         }
         let Finding { status, measured } = together(findings);
         let (judged, reason) = self.expectations.judge(&case.name, status);
-        Ok(CaseResult {
+        Ok(Some(CaseResult {
             name: case.name.clone(),
             status: judged,
             found: status,
             measured,
             reason: reason.map(String::from),
             seconds: started.elapsed().as_secs_f64(),
-        })
+        }))
     }
 
-    /// Runs a case once. A worker that is lost in it is replaced for the next.
-    fn once(&self, case: &Case, run: u32, worker: &mut Option<Worker>) -> io::Result<Finding> {
+    /// Runs a case once; None if it was stopped. A worker that is lost in it is replaced for the next.
+    fn once(
+        &self,
+        case: &Case,
+        run: u32,
+        stop: &AtomicBool,
+        worker: &mut Option<Worker>,
+    ) -> io::Result<Option<Finding>> {
         let limit = self.options.limit.unwrap_or(case.limit);
         for last_try in [false, true] {
             let mut at_work = match worker.take() {
                 Some(worker) => worker,
                 None => Worker::start((self.worker)())?,
             };
-            match at_work.run(&case.name, run, limit) {
+            match at_work.run(&case.name, run, limit, stop) {
                 Outcome::Found(finding) => {
                     *worker = Some(at_work);
-                    return Ok(finding);
+                    return Ok(Some(finding));
+                }
+                Outcome::Stopped => {
+                    at_work.kill();
+                    return Ok(None);
                 }
                 Outcome::Late(seconds) => {
                     at_work.kill();
-                    return Ok(Finding {
+                    return Ok(Some(Finding {
                         status: Status::Timeout,
                         measured: format!("no answer after {seconds} s"),
-                    });
+                    }));
                 }
                 // What an earlier case left behind shall not count against this one.
                 Outcome::Lost { begun: false } if !last_try => drop(at_work.ended()),
                 Outcome::Lost { .. } => {
-                    return Ok(Finding {
+                    return Ok(Some(Finding {
                         status: Status::Crash,
                         measured: at_work.ended(),
-                    });
+                    }));
                 }
             }
         }
@@ -182,6 +211,8 @@ enum Outcome {
     Late(f32),
     /// With the worker's end, before or after it began with the case.
     Lost { begun: bool },
+    /// Without one, because the runner was told to stop.
+    Stopped,
 }
 
 impl Worker {
@@ -218,12 +249,32 @@ impl Worker {
         })
     }
 
-    fn run(&mut self, name: &str, run: u32, limit: Duration) -> Outcome {
+    /// Its next answer, at most `limit` from `since` on; or how the wait ended.
+    fn answer(
+        &self,
+        since: Instant,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<Answer, Outcome> {
+        loop {
+            if stop.load(Ordering::Relaxed) {
+                return Err(Outcome::Stopped);
+            }
+            let left = limit.saturating_sub(since.elapsed());
+            match self.answers.recv_timeout(left.min(GLANCE)) {
+                Ok(answer) => return Ok(answer),
+                Err(RecvTimeoutError::Timeout) if left > GLANCE => {}
+                Err(RecvTimeoutError::Timeout) => return Err(Outcome::Late(limit.as_secs_f32())),
+                Err(RecvTimeoutError::Disconnected) => return Err(Outcome::Lost { begun: false }),
+            }
+        }
+    }
+
+    fn run(&mut self, name: &str, run: u32, limit: Duration, stop: &AtomicBool) -> Outcome {
         if !self.ready {
-            match self.answers.recv_timeout(START) {
+            match self.answer(Instant::now(), START, stop) {
                 Ok(_) => self.ready = true,
-                Err(RecvTimeoutError::Timeout) => return Outcome::Late(START.as_secs_f32()),
-                Err(RecvTimeoutError::Disconnected) => return Outcome::Lost { begun: false },
+                Err(outcome) => return outcome,
             }
         }
         let asked = self
@@ -233,15 +284,14 @@ impl Worker {
         if !asked {
             return Outcome::Lost { begun: false };
         }
-        let deadline = Instant::now() + limit;
+        let since = Instant::now();
         let mut begun = false;
         loop {
-            let left = deadline.saturating_duration_since(Instant::now());
-            match self.answers.recv_timeout(left) {
+            match self.answer(since, limit, stop) {
                 Ok(Answer::End(finding)) => return Outcome::Found(finding),
                 Ok(_) => begun = true,
-                Err(RecvTimeoutError::Timeout) => return Outcome::Late(limit.as_secs_f32()),
-                Err(RecvTimeoutError::Disconnected) => return Outcome::Lost { begun },
+                Err(Outcome::Lost { .. }) => return Outcome::Lost { begun },
+                Err(outcome) => return outcome,
             }
         }
     }
@@ -360,7 +410,9 @@ mod tests {
             let case = |name: &str| Case::new(name, "rule", "source", |_| Ok(Finding::pass("")));
             let cases: Vec<Case> = ["g.s.a", "g.s.bad", "g.s.b", "g.s.c"].map(case).into();
             let mut heard = 0;
-            let report = runner.run(&cases, |_| heard += 1).expect("sh starts");
+            let report = runner
+                .run(&cases, &AtomicBool::new(false), |_| heard += 1)
+                .expect("sh starts");
             assert_eq!(heard, 4);
             report
         }
@@ -421,7 +473,9 @@ mod tests {
                 },
             };
             let case = Case::new("g.s.a", "rule", "source", |_| Ok(Finding::pass("")));
-            let report = runner.run(&[case], |_| ()).expect("sh starts");
+            let report = runner
+                .run(&[case], &AtomicBool::new(false), |_| ())
+                .expect("sh starts");
             assert_eq!(report.results[0].status, Status::Crash);
             assert!(report.results[0].measured.contains("no driver"));
         }

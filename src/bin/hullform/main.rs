@@ -7,6 +7,7 @@ mod compare;
 mod devices;
 mod drawing;
 mod gpu;
+mod interrupt;
 #[cfg(test)]
 mod manual;
 mod model;
@@ -55,6 +56,7 @@ enum Command {
 fn main() -> ExitCode {
     log_to_stderr();
     let arguments = Arguments::parse();
+    interrupt::listen();
     let global = &arguments.global;
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, global),
@@ -96,7 +98,7 @@ fn log_to_stderr() {
 fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::File {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Write {
             path: "standard output".into(),
             source: error,
         }),

@@ -3,6 +3,7 @@
 use crate::options::Shape;
 use hullform::mesh::{BUILTINS, ControlMesh, Scheme, builtin, read_obj_bytes, triangulated};
 use hullform::{Error, Result};
+use std::path::Path;
 
 /// Loads MODEL: the path of an OBJ file, `builtin:NAME`, or if absent the first built-in shape; under the scheme that `--scheme` names or
 /// else its file's name speaks of, triangulated when that scheme takes triangles.
@@ -25,6 +26,12 @@ pub fn load(model: Option<&str>, shape: &Shape) -> Result<ControlMesh> {
         mesh.face_count()
     );
     triangulated(&mesh, shape.triangulate.into())?.with_scheme(scheme)
+}
+
+/// The file that MODEL names.
+pub fn file(model: Option<&str>) -> Option<&Path> {
+    let file = model.filter(|model| !model.starts_with("builtin:"));
+    file.map(Path::new)
 }
 
 fn load_file(path: &str) -> Result<ControlMesh> {

@@ -4,7 +4,7 @@ use crate::camera::{Camera, View};
 use crate::drawing::Drawing;
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
-use crate::output::{Format, Pending, picture, png, wrote};
+use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, Batch, Fill, Pipelines, Slots, SurfaceOptions};
@@ -102,17 +102,20 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     arguments.cut.check(mesh.options().scheme)?;
     let model = Model::new(mesh);
     let load_seconds = started.elapsed().as_secs_f64();
-    let picture = Pending::create(&arguments.output)?;
-    let stats_file = arguments.stats.as_deref().map(Pending::create);
-    let stats_file = stats_file.transpose()?;
+    let reads = model::file(arguments.model.as_deref());
+    let mut writes = vec![("--output", arguments.output.as_path())];
+    writes.extend(arguments.stats.as_deref().map(|path| ("--stats", path)));
+    let files = output::create(reads.as_slice(), &writes)?;
     let gpu = Gpu::open(global)?;
     let (pixels, stats) = draw_picture(&gpu, &model, load_seconds, arguments, global)?;
     gpu.finish()?;
     let size = arguments.size;
-    picture.write(|file| png::write(file, size.width, size.height, &pixels))?;
-    if let Some(file) = stats_file {
-        file.write(|file| writeln!(file, "{stats:#}"))?;
-    }
+    // Picture and statistics, in the order of `writes`.
+    let contents: [&Contents; 2] = [
+        &|out| png::write(out, size.width, size.height, &pixels),
+        &|out| writeln!(out, "{stats:#}"),
+    ];
+    output::write(files.into_iter().zip(contents))?;
     report(arguments, global, &stats)
 }
 

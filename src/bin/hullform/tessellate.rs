@@ -3,7 +3,7 @@
 use crate::capture::capture;
 use crate::gpu::Gpu;
 use crate::options::{self, Global};
-use crate::output::{Format, Pending, Surface, csv, obj, ply};
+use crate::output::{self, Contents, Format, Surface, csv, obj, ply};
 use crate::{model, print, progress};
 use clap::Args;
 use hullform::Result;
@@ -33,7 +33,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let format = Format::of(&arguments.output, &[Format::Csv, Format::Obj, Format::Ply])?;
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
     let chosen = arguments.cut.chosen(&model)?;
-    let file = Pending::create(&arguments.output)?;
+    let reads = model::file(Some(&arguments.model));
+    let writes = [("--output", arguments.output.as_path())];
+    let files = output::create(reads.as_slice(), &writes)?;
     let gpu = Gpu::open(global)?;
     let surface = progress::during("tessellating", |_| {
         let camera = Some(arguments.sight.camera);
@@ -48,11 +50,12 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     })?;
     gpu.finish()?;
     progress::during("writing", |_| {
-        file.write(|out| match format {
+        let contents: &Contents = &|out| match format {
             Format::Obj => obj::write(out, &surface),
             Format::Ply => ply::write(out, &surface),
             _ => csv::write(out, &surface),
-        })
+        };
+        output::write(files.into_iter().zip([contents]))
     })?;
     report(arguments, global, &surface)
 }

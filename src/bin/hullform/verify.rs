@@ -2,8 +2,8 @@
 
 use crate::drawing::Drawing;
 use crate::options::{self, Global, Json};
-use crate::output::{Pending, junit};
-use crate::{model, print};
+use crate::output::{self, Contents, Pending, junit};
+use crate::{interrupt, model, print};
 use clap::Args;
 use hullform::conformance::{
     Case, CaseResult, Context, Expectations, Fault, Registry, Report, RunOptions, Runner, Settings,
@@ -15,6 +15,7 @@ use hullform::mesh::Model;
 use hullform::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -82,6 +83,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         names => Registry::of_models(names.iter().map(String::as_str)),
     };
     if arguments.worker {
+        interrupt::ignore();
         return be_worker(arguments, global, &names, &registry);
     }
     if let Some(filter) = &arguments.filter {
@@ -171,38 +173,37 @@ fn list(cases: &[Case], global: &Global) -> Result<()> {
     print(&names.join("\n"))
 }
 
-/// The files to write, opened before the work begins.
-struct Files {
-    json: Option<Pending>,
-    junit: Option<Pending>,
-    csv: Option<Pending>,
-}
+/// The files to write, as CSV, JUnit's XML and JSON, opened before the work begins.
+struct Files([Option<Pending>; 3]);
 
 impl Files {
     fn create(arguments: &Arguments) -> Result<Files> {
-        let pending = |path: Option<&PathBuf>| path.map(|path| Pending::create(path)).transpose();
+        let models = arguments.models.iter();
+        let models = models.filter_map(|model| model::file(Some(model)));
+        let reads: Vec<&Path> = models.chain(arguments.expectations.as_deref()).collect();
         let json = match &arguments.json {
             Some(Json::File(path)) => Some(path),
             _ => None,
         };
-        Ok(Files {
-            json: pending(json)?,
-            junit: pending(arguments.junit.as_ref())?,
-            csv: pending(arguments.csv.as_ref())?,
-        })
+        let asked = [
+            ("--csv", arguments.csv.as_ref()),
+            ("--junit", arguments.junit.as_ref()),
+            ("--json", json),
+        ];
+        let writes = asked.iter();
+        let writes = writes.filter_map(|&(option, path)| Some((option, path?.as_path())));
+        let mut made = output::create(&reads, &writes.collect::<Vec<_>>())?.into_iter();
+        Ok(Files(asked.map(|(_, path)| path.and_then(|_| made.next()))))
     }
 
     fn write(self, report: &Report, json: &Value) -> Result<()> {
-        if let Some(file) = self.csv {
-            file.write(|out| out.write_all(report.csv().as_bytes()))?;
-        }
-        if let Some(file) = self.junit {
-            file.write(|out| junit::write(out, report))?;
-        }
-        if let Some(file) = self.json {
-            file.write(|out| writeln!(out, "{json:#}"))?;
-        }
-        Ok(())
+        let contents: [&Contents; 3] = [
+            &|out| out.write_all(report.csv().as_bytes()),
+            &|out| junit::write(out, report),
+            &|out| writeln!(out, "{json:#}"),
+        ];
+        let files = self.0.into_iter().zip(contents);
+        output::write(files.filter_map(|(file, contents)| Some((file?, contents))))
     }
 }
 
@@ -225,7 +226,8 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
     };
     let started = Instant::now();
     let bar = progress(cases.len());
-    let report = runner.run(cases, |result| show(&bar, result));
+    let asking = interrupt::ask();
+    let report = runner.run(cases, asking.asked(), |result| show(&bar, result));
     bar.finish_and_clear();
     let report = report.map_err(|source| Error::File {
         path: worker[0].clone().into(),
@@ -233,12 +235,22 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
     })?;
     let seconds = started.elapsed().as_secs_f64();
     let json = as_json(arguments, &device, &expectations, cases, &report, seconds);
-    files.write(&report, &json)?;
+    // Of a run that found nothing, interrupted early, nothing is written over an older one's results.
+    if cases.is_empty() || !report.results.is_empty() {
+        files.write(&report, &json)?;
+    }
     if global.prints_json() {
         print(&format!("{json:#}"))?;
     } else {
         print(&summary(&device, &expectations, &report, seconds))?;
     }
+    if report.results.len() < cases.len() {
+        let (done, all) = (report.results.len(), cases.len());
+        eprint_line(&format!(
+            "hullform: interrupted after {done} of {all} cases"
+        ));
+    }
+    asking.answer();
     match report.unexpected() {
         0 => Ok(()),
         1 => Err(Error::Refused("1 unexpected result".into())),
@@ -369,7 +381,9 @@ fn as_json(
     report: &Report,
     seconds: f64,
 ) -> Value {
-    let results = report.results.iter().zip(cases).map(|(result, case)| {
+    let by_name: HashMap<&str, &Case> = cases.iter().map(|case| (&*case.name, case)).collect();
+    let results = report.results.iter().map(|result| {
+        let case = by_name[result.name.as_str()];
         json!({
             "name": result.name,
             "status": result.status.to_string(),
@@ -393,6 +407,7 @@ fn as_json(
         "seed": arguments.seed,
         "repeat": arguments.repeat,
         "seconds": seconds,
+        "complete": report.results.len() == cases.len(),
         "unexpected": report.unexpected(),
         "results": results.collect::<Vec<_>>(),
     })

@@ -20,7 +20,7 @@ use crate::camera::View;
 use crate::capture::capture;
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
-use crate::output::{Format, Pending, Surface, picture as composed, png, wrote};
+use crate::output::{self, Contents, Format, Surface, picture as composed, png, wrote};
 use crate::{model, print, progress, render};
 use errors::{Errors, Known, Reference, Twin};
 use page::Page;
@@ -94,7 +94,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let options = arguments.tables.options(&all)?;
     let chosen = |method| Chosen { method, options };
     let asked: Vec<Chosen> = asked.into_iter().map(chosen).collect();
-    let file = Pending::create(&arguments.output)?;
+    let reads = model::file(Some(&arguments.model));
+    let writes = [("--output", arguments.output.as_path())];
+    let files = output::create(reads.as_slice(), &writes)?;
     let (able, refusals) = sort_out(&model, &asked, arguments.steps.cutting())?;
     let mut known = Known::new(reference(&model, against.map(chosen))?);
     let gpu = Gpu::open(global)?;
@@ -119,7 +121,8 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         draw(&gpu, &model, &columns, &refusals, scales, arguments, global)
     })?;
     gpu.finish()?;
-    file.write(|out| png::write(out, page.width, page.height, &page.pixels))?;
+    let contents: &Contents = &|out| png::write(out, page.width, page.height, &page.pixels);
+    output::write(files.into_iter().zip([contents]))?;
     report(arguments, global, &columns, &refusals)
 }
 

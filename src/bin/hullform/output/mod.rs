@@ -7,8 +7,11 @@ mod pending;
 pub mod picture;
 pub mod ply;
 pub mod png;
+mod target;
+mod temporary;
 
-pub use pending::Pending;
+pub use pending::{Contents, Pending, create, write};
+pub use temporary::remove_unfinished;
 
 use hullform::{Error, Result};
 use std::path::Path;

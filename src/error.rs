@@ -1,5 +1,6 @@
 //! Everything that can go wrong, in words that speak of the user's own file.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -39,12 +40,37 @@ impl fmt::Display for Place {
     }
 }
 
+/// Text with its control characters escaped, among them those that turn the direction of writing. Names of files and devices, and words of files, go
+/// through here before they get to a terminal, which obeys such characters.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(is_control) {
+        return Cow::Borrowed(text);
+    }
+    let escaped = |c: char| {
+        let escaped = is_control(c).then(|| c.escape_default().to_string());
+        escaped.unwrap_or_else(|| c.into())
+    };
+    Cow::Owned(text.chars().map(escaped).collect())
+}
+
+/// Unicode's control characters (category Cc), the separators of lines and paragraphs, and the explicit directional formatting characters
+/// (Unicode Standard Annex 9, section 2).
+fn is_control(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200e}' | '\u{200f}' | '\u{61c}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The same for what is displayed.
+fn shown(words: fmt::Arguments<'_>) -> String {
+    visible(&words.to_string()).into_owned()
+}
+
 /// An error of this crate. Bad input is always one of these, never a panic.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The input says something that has no meaning: where, what, and what to do about it.
-    #[error("{place}: {problem}; {remedy}")]
+    #[error("{}", shown(format_args!("{place}: {problem}; {remedy}")))]
     Input {
         /// Where it stands in the input.
         place: Place,
@@ -54,7 +80,7 @@ pub enum Error {
         remedy: String,
     },
     /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", visible(&path.to_string_lossy()))]
     File {
         /// The file.
         path: PathBuf,
@@ -62,7 +88,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A file was there to be written, and then could not be: the disk is full, or the reader has gone.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", visible(&path.to_string_lossy()))]
     Write {
         /// The file.
         path: PathBuf,
@@ -70,7 +96,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// An option has a value outside its range or vocabulary.
-    #[error("{option}: {problem}; {remedy}")]
+    #[error("{}", shown(format_args!("{option}: {problem}; {remedy}")))]
     Option {
         /// The option as the user knows it.
         option: &'static str,
@@ -80,7 +106,7 @@ pub enum Error {
         remedy: String,
     },
     /// No Vulkan device can do the work; the text says what each one lacks.
-    #[error("no suitable Vulkan device: {0}")]
+    #[error("no suitable Vulkan device: {}", visible(.0))]
     NoDevice(String),
     /// A Vulkan call failed.
     #[error("{call} failed: {result}")]
@@ -112,5 +138,40 @@ impl Error {
             Error::NoDevice(_) => 3,
             Error::Vulkan { .. } | Error::Refused(_) | Error::Write { .. } => 1,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_do_not_move_the_cursor() {
+        let name = "a\u{1b}[2J\n\r\u{7f}\u{9b}\u{202e}b";
+        let plain = |words: String| {
+            assert!(!words.chars().any(is_control), "{words:?}");
+            assert!(words.contains("a\\u{1b}[2J\\n\\r"), "{words}");
+        };
+        let source = || std::io::Error::other("no");
+        let path = || PathBuf::from(name);
+        plain(visible(name).into_owned());
+        plain(Error::input(Place::Line(name.into(), 1), "is odd", "change it").to_string());
+        plain(Error::input(Place::Mesh, format!("'{name}' is odd"), "change it").to_string());
+        plain(
+            Error::File {
+                path: path(),
+                source: source(),
+            }
+            .to_string(),
+        );
+        plain(
+            Error::Write {
+                path: path(),
+                source: source(),
+            }
+            .to_string(),
+        );
+        plain(Error::NoDevice(name.into()).to_string());
+        assert_eq!(visible("Größe – 大"), "Größe – 大");
     }
 }

@@ -1,5 +1,6 @@
 //! Which driver, in which version.
 
+use crate::error::visible;
 use ash::vk;
 use std::ffi::{CStr, c_char};
 use std::fmt;
@@ -81,10 +82,10 @@ fn unpack(id: vk::DriverId, packed: u32) -> Version {
     }
 }
 
-/// A fixed array that Vulkan filled with a C string; empty if it forgot the terminator.
+/// A fixed array that Vulkan filled with a C string, with its control characters escaped; empty if it forgot the terminator.
 pub(crate) fn text(chars: &[c_char]) -> String {
     CStr::from_bytes_until_nul(bytemuck::cast_slice(chars))
-        .map(|name| name.to_string_lossy().into_owned())
+        .map(|name| visible(&name.to_string_lossy()).into_owned())
         .unwrap_or_default()
 }
 

@@ -86,7 +86,7 @@ fn describe(instance: &Instance, index: usize, physical: vk::PhysicalDevice) -> 
     }
 }
 
-/// The device that `selector` means (an index, or a part of a name in any case), or without one the first suitable discrete
+/// The device that `selector` means (an index, else a part of a name in any case), or without one the first suitable discrete
 /// GPU, else integrated, else any.
 pub(crate) fn choose(devices: &[DeviceInfo], selector: Option<&str>) -> Result<DeviceInfo> {
     let asked: Vec<&DeviceInfo> = match selector {
@@ -100,13 +100,15 @@ pub(crate) fn choose(devices: &[DeviceInfo], selector: Option<&str>) -> Result<D
 }
 
 fn select<'a>(devices: &'a [DeviceInfo], selector: &str) -> Vec<&'a DeviceInfo> {
-    // A number beyond the list may still be a name's: "3060".
-    let by_index = selector
-        .parse()
-        .ok()
-        .and_then(|index: usize| devices.get(index));
-    if let Some(device) = by_index {
-        return vec![device];
+    // A number is never a part of a name: the 1 of a device that is not there would be that of "LLVM 15.0.6".
+    if !selector.is_empty() && selector.bytes().all(|byte| byte.is_ascii_digit()) {
+        let index = selector.parse().ok();
+        let device = index.and_then(|index: usize| devices.get(index));
+        return device.into_iter().collect();
+    }
+    // Nothing, which every name contains, names none.
+    if selector.trim().is_empty() {
+        return Vec::new();
     }
     let part = selector.to_lowercase();
     let named = |device: &&DeviceInfo| device.name.to_lowercase().contains(&part);
@@ -128,9 +130,14 @@ fn none_suitable(all: &[DeviceInfo], asked: &[&DeviceInfo], selector: Option<&st
     }
     match selector {
         Some(selector) if asked.is_empty() => {
-            let names: Vec<_> = all.iter().map(|device| device.name.as_str()).collect();
+            let names = all
+                .iter()
+                .map(|device| format!("{} ({})", device.index, device.name));
+            let names: Vec<String> = names.collect();
             let names = names.join(", ");
-            Error::NoDevice(format!("none is called '{selector}'; there are: {names}"))
+            Error::NoDevice(format!(
+                "'{selector}' is neither the index nor a part of the name of one; there are: {names}"
+            ))
         }
         _ => Error::NoDevice(lacking(asked)),
     }
@@ -191,8 +198,18 @@ mod tests {
     }
 
     #[test]
+    fn a_number_is_an_index_and_nothing_names_none() {
+        // 3060 is a part of a name.
+        for wrong in ["3", "3060", "18446744073709551616", "", " "] {
+            let words = chosen(Some(wrong)).expect_err(wrong);
+            assert!(words.contains("there are: 0 (llvmpipe)"), "{words}");
+        }
+        assert_eq!(chosen(Some("00")), Ok(0));
+    }
+
+    #[test]
     fn a_device_that_lacks_something_says_what() {
-        let words = chosen(Some("3060")).expect_err("it lacks x and y");
+        let words = chosen(Some("old")).expect_err("it lacks x and y");
         assert!(words.ends_with("Old 3060 lacks x, y"), "{words}");
         let words = chosen(Some("1")).expect_err("it lacks x and y");
         assert!(words.ends_with("Old 3060 lacks x, y"), "{words}");
@@ -201,7 +218,11 @@ mod tests {
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
         let words = chosen(Some("voodoo")).expect_err("there is no such device");
-        assert!(words.contains("'voodoo'") && words.contains("llvmpipe, Old 3060, Iris"));
+        assert!(words.contains("'voodoo'"), "{words}");
+        assert!(
+            words.contains("0 (llvmpipe), 1 (Old 3060), 2 (Iris)"),
+            "{words}"
+        );
         let none = choose(&[], None).expect_err("there is no device");
         assert_eq!(none.exit_code(), 3);
     }

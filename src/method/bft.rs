@@ -96,7 +96,8 @@ fn check_size(pass: &Pass) -> Result<()> {
         problem: format!(
             "the tables take {bytes} bytes, and devices may bind {MOST_BYTES} at most"
         ),
-        remedy: "give a lower level, or shading instead of geometric normals".into(),
+        remedy: "give a lower level, shading instead of geometric normals, or another method"
+            .into(),
     })
 }
 

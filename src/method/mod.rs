@@ -338,15 +338,28 @@ impl Pass {
         }
     }
 
-    /// Evaluates patch `patch` at `uv` of its own domain.
+    /// Evaluates patch `patch` at `uv` of its own domain; what lies outside of that is moved to its edge. Where there is no such patch, or (u, v) is
+    /// no number, there is no surface: position and normal are zero.
+    ///
+    /// # Panics
+    /// With `controls` of another model, which has fewer vertices.
     pub fn evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-        (self.twin)(self, controls, patch, uv)
+        if patch >= self.patches.len() || uv.is_nan() {
+            return SurfacePoint::default();
+        }
+        (self.twin)(
+            self,
+            controls,
+            patch,
+            self.domain.nearest(uv.to_array()).into(),
+        )
     }
 
     /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in
-    /// `glsl/lib/vertex.glsl`.
+    /// `glsl/lib/vertex.glsl`. Zero where there is no such patch.
     pub fn texture_coordinates(&self, patch: usize, uv: [f32; 2]) -> [f32; 2] {
-        let [a, b, c, d] = self.texture[patch].map(Vec2::from);
+        let corners = self.texture.get(patch).copied().unwrap_or_default();
+        let [a, b, c, d] = corners.map(Vec2::from);
         let [u, v] = uv;
         match self.domain {
             Domain::Quads => a.lerp(b, u).lerp(d.lerp(c, u), v),
@@ -357,16 +370,15 @@ impl Pass {
 
     /// Whether a point of a patch's domain is a corner of the finest grid that the pass has tables for; see [`Reproduces::LimitOnLattice`].
     pub fn is_on_lattice(&self, uv: [f32; 2]) -> bool {
-        let segments = (1u32 << self.max_level.saturating_sub(1)) as f32;
+        let segments = (1u32 << self.max_level.saturating_sub(1).min(31)) as f32;
         uv.iter().all(|x| (x * segments).fract() == 0.0)
     }
 
-    /// The points that patch `patch` needs in the ring at `level`.
+    /// The points that patch `patch` needs in the ring at `level`, from 10 on as at 10; none where there is no such patch.
     pub fn points(&self, patch: usize, level: u32) -> u32 {
-        let plan = self.patches[patch].plan as usize;
-        self.scratch_points
-            .get(plan)
-            .map_or(0, |points| points[level as usize])
+        let plan = self.patches.get(patch).map(|patch| patch.plan as usize);
+        let points = plan.and_then(|plan| self.scratch_points.get(plan));
+        points.map_or(0, |points| points[level.min(abi::HIGHEST_LEVEL) as usize])
     }
 }
 

@@ -53,16 +53,23 @@ pub fn whole_faces(model: &Model) -> Result<()> {
         .find(|&face| !scheme.is_whole(corners(face)))
     {
         None => Ok(()),
-        Some(face) => Err(Error::Input {
-            place: Place::Face(face as usize),
-            problem: format!(
-                "under {scheme} its {} corners make it several patches, and methods that know vertices alone take whole faces",
-                corners(face)
-            ),
-            remedy:
+        Some(face) => {
+            let remedy = if corners(face) == 3 {
                 "cut it into quads, or use a scheme that takes triangles whole (loop-stam, loop)"
-                    .into(),
-        }),
+            } else if scheme.is_whole(3) {
+                "cut it into triangles or quads"
+            } else {
+                "cut it into quads"
+            };
+            Err(Error::Input {
+                place: Place::Face(face as usize),
+                problem: format!(
+                    "under {scheme} its {} corners make it several patches, and methods that know vertices alone take whole faces",
+                    corners(face)
+                ),
+                remedy: remedy.into(),
+            })
+        }
     }
 }
 

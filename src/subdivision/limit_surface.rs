@@ -114,14 +114,18 @@ impl LimitSurface {
     }
 
     /// The face of a ptex number and its corner there (0 for quads).
+    ///
+    /// # Panics
+    /// Where there is no such ptex face.
     pub fn face_corner(&self, ptex: usize) -> (u32, u32) {
         self.ptex[ptex]
     }
 
-    /// The limit at (u, v), each in 0..=1, of a ptex face; None in a hole.
+    /// The limit at (u, v) of a ptex face; what lies outside of 0..=1 is moved to its end. None in a hole, where there is no such face, and where u
+    /// or v is no number.
     pub fn evaluate(&self, ptex: usize, u: f64, v: f64) -> Option<LimitSample> {
-        let (face, corner) = self.ptex[ptex];
-        if self.topology.is_hole(face) {
+        let &(face, corner) = self.ptex.get(ptex)?;
+        if self.topology.is_hole(face) || u.is_nan() || v.is_nan() {
             return None;
         }
         let uv = DVec2::new(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));

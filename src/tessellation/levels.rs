@@ -13,19 +13,22 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    /// The number of segments that the tessellator makes of an edge of this level (Vulkan spec, "Tessellator Spacing").
+    /// The number of segments that the tessellator makes of an edge of this level (Vulkan spec, "Tessellator Spacing"), at most 64.
     pub fn segments(self, level: f32) -> u32 {
+        let level = self.clamp(level, abi::HIGHEST_LEVEL);
         match self {
-            Spacing::Equal => level.clamp(self.least(), 64.0).ceil() as u32,
-            Spacing::FractionalEven => 2 * (level.clamp(self.least(), 64.0) / 2.0).ceil() as u32,
+            Spacing::Equal => level.ceil() as u32,
+            Spacing::FractionalEven => 2 * (level / 2.0).ceil() as u32,
         }
     }
 
     /// The level within what the tessellator and plans of `max_level` levels can do: from [`least`](Self::least) to 2^`max_level` and at
-    /// most 64.
+    /// most 64. What is no number becomes the least.
     pub fn clamp(self, level: f32, max_level: u32) -> f32 {
-        let greatest = (1u32 << max_level).min(64) as f32;
-        level.clamp(self.least(), greatest.max(self.least()))
+        // 2^6 is all that the tessellator does.
+        let greatest = (1u32 << max_level.min(6)) as f32;
+        // Not f32::clamp, which lets NaN pass.
+        level.max(self.least()).min(greatest.max(self.least()))
     }
 
     /// The least level: the tessellator raises lower ones to it.
@@ -60,6 +63,17 @@ impl Domain {
         match self {
             Domain::Quads => 4,
             Domain::Triangles => 3,
+        }
+    }
+
+    /// The point of it for (u, v): itself, or one on the edge for what lies outside. Numbers that a tessellator rounded a little beyond the edge
+    /// stay.
+    pub(crate) fn nearest(self, [u, v]: [f32; 2]) -> [f32; 2] {
+        const ROUNDED: f32 = 1e-6;
+        let [u, v] = [u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)];
+        match self {
+            Domain::Triangles if u + v > 1.0 + ROUNDED => [u, 1.0 - u],
+            _ => [u, v],
         }
     }
 
@@ -199,7 +213,7 @@ pub(crate) fn ring_vertices(segments: u32) -> u32 {
 /// The plan level that tess levels need: ceil(log2 of the greatest), at most `max_level`.
 pub fn required_level(levels: &Levels, max_level: u32) -> u32 {
     (0..max_level)
-        .find(|&level| (1u32 << level) as f32 >= levels.greatest())
+        .find(|&level| (1u64 << level.min(63)) as f32 >= levels.greatest())
         .unwrap_or(max_level)
 }
 
@@ -208,6 +222,31 @@ mod tests {
     use super::*;
 
     const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
+
+    #[test]
+    fn whatever_is_asked_for_levels_stay_in_range() {
+        let odd = [f32::NAN, f32::INFINITY, -f32::INFINITY, -1.0, 0.0, 1e30];
+        for spacing in SPACINGS {
+            for max_level in [0, 6, 31, 32, 40, u32::MAX] {
+                for level in odd {
+                    let clamped = spacing.clamp(level, max_level);
+                    assert!((spacing.least()..=64.0).contains(&clamped));
+                    for domain in [Domain::Quads, Domain::Triangles] {
+                        let made = levels(domain, &patch(0), level, spacing, max_level);
+                        assert!(made.vertices(spacing) > 0 && made.triangles(spacing) > 0);
+                        let raw = Levels {
+                            domain,
+                            edges: [level; 4],
+                            inside: level,
+                        };
+                        assert!(raw.vertices(spacing) > 0);
+                        assert!(required_level(&raw, max_level) <= max_level);
+                        assert!(!crate::tessellation::pattern(&raw).is_empty());
+                    }
+                }
+            }
+        }
+    }
 
     fn patch(flags: u32) -> abi::Patch {
         abi::Patch {

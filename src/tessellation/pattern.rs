@@ -6,16 +6,21 @@
 
 use crate::tessellation::{Domain, Levels};
 
-/// The segments of an edge of the lattice that a patch's pattern lies on. Levels are powers of two.
+/// The segments of an edge of the lattice that a patch's pattern lies on. Levels are powers of two; here and below what lies outside of 1..=64
+/// counts as the end of that.
 pub fn lattice_segments(levels: &Levels) -> u32 {
-    levels.greatest() as u32
+    segments(levels.greatest())
+}
+
+fn segments(level: f32) -> u32 {
+    (level as u32).clamp(1, 64)
 }
 
 /// The vertices of a patch's pattern.
 pub fn lattice_vertices(levels: &Levels) -> u32 {
     let n = lattice_segments(levels);
     let outer = levels.edges[..levels.domain.corners()].iter();
-    let outer: u32 = outer.map(|&level| level as u32).sum();
+    let outer: u32 = outer.map(|&level| segments(level)).sum();
     let inner = match levels.domain {
         Domain::Quads => (n - 1) * (n - 1),
         Domain::Triangles => (n - 1) * n.saturating_sub(2) / 2,
@@ -67,7 +72,7 @@ pub fn pattern(levels: &Levels) -> Vec<[[u32; 2]; 3]> {
 /// Where a point of the lattice goes: on an edge to the nearest point that the edge has, from halfway to the one that comes next around the
 /// patch, counter-clockwise. Were it another on two edges of a corner, a triangle could get all of its corners on the third edge. Twin of `snapped` in `glsl/surface.geom`.
 fn snapped(levels: &Levels, n: u32, [i, j]: [u32; 2]) -> [u32; 2] {
-    let step = |edge: usize| n / levels.edges[edge] as u32;
+    let step = |edge: usize| n / segments(levels.edges[edge]);
     let along = |at: u32, edge: usize| (at + step(edge) / 2) / step(edge) * step(edge);
     // Of edges that are counted from their end.
     let against = |at: u32, edge: usize| (at + (step(edge) - 1) / 2) / step(edge) * step(edge);

@@ -21,11 +21,16 @@ type Ring = [Vec<u32>; 3];
 pub fn triangle(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
     let (rim, mut inside): (Vec<u32>, Vec<u32>) =
         (0..uv.len() as u32).partition(|&i| distances(uv[i as usize]).iter().any(|d| *d <= 1e-7));
+    let rings = segments_for(inside.len());
+    let wanted: u32 = inner_rings(rings).map(ring_vertices).sum();
+    if wanted as usize != inside.len() {
+        return Vec::new();
+    }
     let mut triangles = Vec::new();
     let mut outer = rim_of(uv, &rim);
     inside.sort_by(|&a, &b| order(depth(uv, a), depth(uv, b)));
     let mut rest = &inside[..];
-    for segments in inner_rings(segments_for(inside.len())) {
+    for segments in inner_rings(rings) {
         let (own, deeper) = rest.split_at(ring_vertices(segments) as usize);
         rest = deeper;
         let inner = ring_of(uv, own);

@@ -9,8 +9,23 @@ use crate::tessellation::{Domain, rings};
 
 /// The triangles of a patch, counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order.
 ///
-/// The outer edges may have different numbers of vertices; those inside must be as the tessellator makes them.
+/// The outer edges may have different numbers of vertices; those inside must be as the tessellator makes them. There are no triangles where the
+/// vertices are none of a patch: where a corner lacks, a coordinate is outside of 0..=1 or no number, or those inside have the wrong number.
 pub fn triangulate(domain: Domain, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+    // The corners of triangles come out of sums that round.
+    let rounded = match domain {
+        Domain::Quads => 0.0,
+        Domain::Triangles => 1e-6,
+    };
+    let corners = &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]][..domain.corners()];
+    let near = |[u, v]: [f32; 2], [x, y]: [f32; 2]| (u - x).abs().max((v - y).abs()) <= rounded;
+    let has_corners = corners
+        .iter()
+        .all(|&corner| uv.iter().any(|&at| near(at, corner)));
+    let in_range = |x: &f32| (-rounded..=1.0 + rounded).contains(x);
+    if !has_corners || !uv.iter().flatten().all(in_range) {
+        return Vec::new();
+    }
     match domain {
         Domain::Quads => quad(uv),
         Domain::Triangles => rings::triangle(uv),
@@ -20,6 +35,9 @@ pub fn triangulate(domain: Domain, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
 fn quad(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
     let is_edge = |x: f32| x == 0.0 || x == 1.0;
     let inside: Vec<u32> = numbers(uv, |[u, v]| !is_edge(u) && !is_edge(v));
+    if inside.len().isqrt().pow(2) != inside.len() {
+        return Vec::new();
+    }
     let rows = rows(uv, inside);
     let mut triangles = grid(&rows);
     for side in 0..4 {
@@ -142,6 +160,32 @@ pub(super) fn stitch(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_no_patch_has_no_triangles() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        for domain in [Domain::Quads, Domain::Triangles] {
+            let own = &corners[..domain.corners()];
+            assert!(!triangulate(domain, own).is_empty());
+            let with = |more: &[[f32; 2]]| triangulate(domain, &[own, more].concat());
+            assert!(triangulate(domain, &[]).is_empty());
+            assert!(triangulate(domain, &own[1..]).is_empty());
+            assert!(with(&[[f32::NAN, 0.5]]).is_empty());
+            assert!(with(&[[0.5, f32::INFINITY]]).is_empty());
+            assert!(with(&[[0.5, 3e38]]).is_empty());
+            // Two vertices inside are those of no level.
+            assert!(with(&[[0.25, 0.25], [0.3, 0.25]]).is_empty());
+            // Whatever comes, nothing but triangles of its vertices comes out.
+            for seed in 0..2000u32 {
+                let number =
+                    |i: u32| (seed.wrapping_mul(2_654_435_761).rotate_left(i * 7) % 9) as f32 / 8.0;
+                let odd: Vec<[f32; 2]> =
+                    (0..seed % 12).map(|i| [number(i), number(i + 3)]).collect();
+                let count = (own.len() + odd.len()) as u32;
+                assert!(with(&odd).iter().flatten().all(|&vertex| vertex < count));
+            }
+        }
+    }
 
     /// The vertices of a patch with the given segments on its edges and inside.
     fn vertices(edges: [u32; 4], inside: u32) -> Vec<[f32; 2]> {

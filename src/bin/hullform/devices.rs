@@ -2,7 +2,7 @@
 
 use crate::gpu::check;
 use crate::options::Global;
-use crate::print;
+use crate::{print, print_json};
 use ash::vk;
 use hullform::gpu::Workaround;
 use hullform::host::{Device, DeviceInfo, Instance, devices};
@@ -18,7 +18,7 @@ pub fn run(global: &Global) -> Result<()> {
         let chosen = Device::open(&instance, Some(selector))?;
         listed.retain(|device| device.index == chosen.info().index);
     }
-    print(&report(&listed, global))?;
+    report(&listed, global)?;
     check(&instance)?;
     if listed.iter().any(DeviceInfo::is_suitable) {
         Ok(())
@@ -28,19 +28,19 @@ pub fn run(global: &Global) -> Result<()> {
     }
 }
 
-fn report(devices: &[DeviceInfo], global: &Global) -> String {
+fn report(devices: &[DeviceInfo], global: &Global) -> Result<()> {
     if global.prints_json() {
         let devices: Vec<_> = devices
             .iter()
             .map(|device| as_json(device, global))
             .collect();
-        return format!("{:#}", json!({ "devices": devices }));
+        return print_json(&json!({ "devices": devices }));
     }
     let texts: Vec<_> = devices
         .iter()
         .map(|device| as_text(device, global))
         .collect();
-    texts.join("\n")
+    print(&texts.join("\n"))
 }
 
 fn active<'a>(device: &'a DeviceInfo, global: &Global) -> &'a [&'static Workaround] {

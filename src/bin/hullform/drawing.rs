@@ -15,6 +15,7 @@ use hullform::tessellation::{Domain, Spacing};
 use hullform::{Error, Result, abi};
 
 use crate::adaptive::Seen;
+use crate::approximation;
 use crate::camera::{self, Camera};
 use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Points};
@@ -50,6 +51,9 @@ impl<'a> Drawing<'a> {
         let started = Instant::now();
         let prepared = chosen.prepare(model)?;
         let planned = Instant::now();
+        if chosen.by_default {
+            approximation::tell(model, chosen.method, &prepared);
+        }
         let device = gpu.device.raw();
         let mut drawing = Drawing {
             gpu,

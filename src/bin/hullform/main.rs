@@ -1,6 +1,7 @@
 //! The `hullform` program: subdivision surfaces from the command line.
 
 mod adaptive;
+mod approximation;
 mod camera;
 mod capture;
 mod compare;
@@ -20,6 +21,7 @@ mod tessellate;
 mod verify;
 
 use clap::{Parser, Subcommand};
+use hullform::error::visible;
 use hullform::{Error, Result};
 use options::Global;
 use std::io::Write;
@@ -74,7 +76,7 @@ fn exit_code(result: Result<()>) -> ExitCode {
         return ExitCode::SUCCESS;
     };
     // Not eprintln, which panics where nobody listens.
-    let _ = writeln!(std::io::stderr(), "hullform: {error}");
+    let _ = writeln!(std::io::stderr(), "hullform: {}", plain(&error.to_string()));
     ExitCode::from(error.exit_code())
 }
 
@@ -86,7 +88,7 @@ fn log_to_stderr() {
         .from_env_lossy();
     tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(std::io::stderr)
+        .with_writer(|| Plain(std::io::stderr()))
         .with_target(false)
         .without_time()
         // It would report a closed stderr on stderr, and panic.
@@ -94,8 +96,38 @@ fn log_to_stderr() {
         .init();
 }
 
+/// Lines without other control characters: a terminal shall not obey what a driver or a file says.
+fn plain(text: &str) -> String {
+    let lines: Vec<_> = text.split('\n').map(visible).collect();
+    lines.join("\n")
+}
+
+/// A writer of plain text.
+struct Plain<W>(W);
+
+impl<W: Write> Write for Plain<W> {
+    /// Log lines come whole.
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let text = plain(&String::from_utf8_lossy(bytes));
+        self.0.write_all(text.as_bytes()).map(|()| bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.0.flush()
+    }
+}
+
 /// Prints `text` and a line break on standard output. That the reader has gone (`hullform devices | head -1`) is not an error.
 fn print(text: &str) -> Result<()> {
+    print_as_it_is(&plain(text))
+}
+
+/// Prints JSON, which has escapes of its own.
+fn print_json(value: &serde_json::Value) -> Result<()> {
+    print_as_it_is(&format!("{value:#}"))
+}
+
+fn print_as_it_is(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Write {

@@ -15,7 +15,7 @@ use std::str::FromStr;
 #[derive(Args)]
 pub struct Global {
     /// Vulkan device: its index or a part of its name [default: the first discrete GPU that will do, else any]
-    #[arg(long, global = true, value_name = "INDEX|NAME")]
+    #[arg(long, global = true, value_name = "INDEX|NAME", value_parser = device)]
     pub device: Option<String>,
     /// Run under the validation layer; any message of it makes the run fail
     #[arg(long, global = true)]
@@ -199,6 +199,8 @@ pub struct Chosen {
     pub method: &'static Method,
     /// Its options.
     pub options: MethodOptions,
+    /// Whether nobody asked for it.
+    pub by_default: bool,
 }
 
 impl Chosen {
@@ -332,7 +334,11 @@ impl Cut {
         };
         method.check(model.mesh().options().scheme)?;
         let options = self.tables.options(&[method])?;
-        Ok(Chosen { method, options })
+        Ok(Chosen {
+            method,
+            options,
+            by_default: self.method.is_none(),
+        })
     }
 
     /// As the library takes it.
@@ -390,6 +396,13 @@ impl FromStr for Size {
             Some((width @ 1.., height @ 1..)) => Ok(Size { width, height }),
             _ => Err("expected WIDTHxHEIGHT in pixels, such as 1280x720"),
         }
+    }
+}
+
+fn device(text: &str) -> Result<String, &'static str> {
+    match text.trim() {
+        "" => Err("expected an index or a part of a name"),
+        _ => Ok(text.into()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `hullform plan`: how the faces of a model are planned.
 
 use crate::options::{self, Global};
-use crate::{model, print, progress};
+use crate::{model, print, print_json, progress};
 use clap::Args;
 use hullform::Result;
 use hullform::mesh::{ControlMesh, Model};
@@ -30,7 +30,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let mesh = model::load(Some(&arguments.model), &arguments.shape)?;
     let facts = progress::during("planning", |_| facts(&mesh, arguments))?;
     if global.prints_json() {
-        print(&format!("{:#}", Value::Object(facts)))
+        print_json(&Value::Object(facts))
     } else {
         print(&as_text(&facts))
     }

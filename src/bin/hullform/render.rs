@@ -5,7 +5,7 @@ use crate::drawing::Drawing;
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, picture, png, wrote};
-use crate::{model, print, progress};
+use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, Batch, Fill, Pipelines, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
@@ -101,6 +101,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let mesh = model::load(arguments.model.as_deref(), &arguments.shape)?;
     arguments.cut.check(mesh.options().scheme)?;
     let model = Model::new(mesh);
+    arguments.cut.chosen(&model)?;
     let load_seconds = started.elapsed().as_secs_f64();
     let reads = model::file(arguments.model.as_deref());
     let mut writes = vec![("--output", arguments.output.as_path())];
@@ -198,7 +199,7 @@ pub fn draw_lit(
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
     if global.prints_json() {
-        print(&format!("{stats:#}"))
+        print_json(stats)
     } else {
         print(&wrote(&arguments.output))
     }

@@ -4,9 +4,10 @@ use crate::capture::capture;
 use crate::gpu::Gpu;
 use crate::options::{self, Global};
 use crate::output::{self, Contents, Format, Surface, csv, obj, ply};
-use crate::{model, print, progress};
+use crate::{model, print, print_json, progress};
 use clap::Args;
 use hullform::Result;
+use hullform::error::visible;
 use hullform::mesh::Model;
 use serde_json::json;
 use std::path::PathBuf;
@@ -62,12 +63,12 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
 
 fn report(arguments: &Arguments, global: &Global, surface: &Surface) -> Result<()> {
     let (points, triangles) = (surface.points.len(), surface.triangles.len());
-    let path = arguments.output.display();
+    let path = arguments.output.display().to_string();
     if global.prints_json() {
-        let report =
-            json!({ "output": path.to_string(), "points": points, "triangles": triangles });
-        print(&format!("{report:#}"))
+        let report = json!({ "output": path, "points": points, "triangles": triangles });
+        print_json(&report)
     } else {
+        let path = visible(&path);
         print(&format!("{path}: {points} points, {triangles} triangles"))
     }
 }

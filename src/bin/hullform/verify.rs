@@ -3,7 +3,7 @@
 use crate::drawing::Drawing;
 use crate::options::{self, Global, Json};
 use crate::output::{self, Contents, Pending, junit};
-use crate::{interrupt, model, print};
+use crate::{interrupt, model, print, print_json};
 use clap::Args;
 use hullform::conformance::{
     Case, CaseResult, Context, Expectations, Fault, Registry, Report, RunOptions, Runner, Settings,
@@ -167,7 +167,7 @@ fn list(cases: &[Case], global: &Global) -> Result<()> {
             })
         });
         let cases: Vec<Value> = cases.collect();
-        return print(&format!("{:#}", json!({ "cases": cases })));
+        return print_json(&json!({ "cases": cases }));
     }
     let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     print(&names.join("\n"))
@@ -240,7 +240,7 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
         files.write(&report, &json)?;
     }
     if global.prints_json() {
-        print(&format!("{json:#}"))?;
+        print_json(&json)?;
     } else {
         print(&summary(&device, &expectations, &report, seconds))?;
     }
@@ -344,7 +344,7 @@ fn show(bar: &ProgressBar, result: &CaseResult) {
 
 fn eprint_line(line: &str) {
     use io::Write;
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", crate::plain(line));
 }
 
 fn summary(

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use crate::output::{Point, Surface};
 
 /// Position and unit normal; the normal is zero where there is none.
-type Sample = (DVec3, DVec3);
+pub type Sample = (DVec3, DVec3);
 
 /// A point of a ptex face, by its bits.
 type Key = (u32, [u32; 2]);
@@ -71,7 +71,8 @@ impl Twin {
 }
 
 impl Reference {
-    fn evaluate(&self, face: u32, uv: [f32; 2]) -> Option<Sample> {
+    /// Position and normal at a point of a ptex face; None where there is no surface.
+    pub fn evaluate(&self, face: u32, uv: [f32; 2]) -> Option<Sample> {
         match self {
             Reference::Truth(limit) => {
                 let [u, v] = uv.map(f64::from);

@@ -1,7 +1,7 @@
 //! `hullform compare`: methods side by side, with maps of their errors.
 
 mod costs;
-mod errors;
+pub mod errors;
 mod page;
 mod picture;
 mod scale;
@@ -21,7 +21,7 @@ use crate::capture::capture;
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, Surface, picture as composed, png, wrote};
-use crate::{model, print, progress, render};
+use crate::{model, print, print_json, progress, render};
 use errors::{Errors, Known, Reference, Twin};
 use page::Page;
 use scale::Scale;
@@ -92,7 +92,11 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let asked = asked(&arguments.methods, model.mesh().options().scheme)?;
     let all: Vec<&Method> = asked.iter().copied().chain(against).collect();
     let options = arguments.tables.options(&all)?;
-    let chosen = |method| Chosen { method, options };
+    let chosen = |method| Chosen {
+        method,
+        options,
+        by_default: false,
+    };
     let asked: Vec<Chosen> = asked.into_iter().map(chosen).collect();
     let reads = model::file(Some(&arguments.model));
     let writes = [("--output", arguments.output.as_path())];
@@ -315,7 +319,7 @@ fn report(
         "methods": methods,
         "refused": refused.collect::<Vec<_>>(),
     });
-    print(&format!("{report:#}"))
+    print_json(&report)
 }
 
 fn facts(column: &Column) -> Value {

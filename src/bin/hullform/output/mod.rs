@@ -13,13 +13,15 @@ mod temporary;
 pub use pending::{Contents, Pending, create, write};
 pub use temporary::remove_unfinished;
 
+use hullform::error::visible;
 use hullform::{Error, Result};
 use std::path::Path;
 
 /// Where a picture went, in words: by its whole path, since scripts are called from anywhere.
 pub fn wrote(path: &Path) -> String {
     let whole = std::path::absolute(path);
-    format!("wrote {}", whole.as_deref().unwrap_or(path).display())
+    let whole = whole.as_deref().unwrap_or(path);
+    format!("wrote {}", visible(&whole.to_string_lossy()))
 }
 
 /// A file format, known by the extension of the file's name.

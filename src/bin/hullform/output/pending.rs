@@ -22,7 +22,7 @@ pub struct Pending {
 
 enum Place {
     /// The temporary file, where it goes, and what is there already.
-    File(Temporary, PathBuf, Option<Metadata>),
+    File(Temporary, PathBuf, Option<Box<Metadata>>),
     /// Something that is no regular file, and is written to.
     Stream(File),
 }

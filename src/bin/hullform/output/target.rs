@@ -10,7 +10,7 @@ const MAX_LINKS: usize = 40;
 /// Where an output goes.
 pub enum Target {
     /// A regular file, there or not yet, by its folder's true name and its own behind all links; and what it is like, if it is there.
-    File(PathBuf, Option<Metadata>),
+    File(PathBuf, Option<Box<Metadata>>),
     /// Something else, open: a device, a pipe, a descriptor of this process. To rename a file there would replace it, so it is written to.
     Stream(File),
 }
@@ -59,7 +59,7 @@ fn end(folder: &Path, path: &Path) -> io::Result<Target> {
     let open = File::options().write(true).open(&path)?;
     match there {
         Some(there) if !there.is_file() => Ok(Target::Stream(open)),
-        there => Ok(Target::File(path, there)),
+        there => Ok(Target::File(path, there.map(Box::new))),
     }
 }
 

@@ -9,9 +9,12 @@
 //! submits and never waits. Two places ask something of the engine: the features that the device is created with (step 2) and one
 //! dependency in the render pass (step 5). Everything else is `cmd_*` calls into a command buffer that is recording anyway.
 //!
-//! An error ends the program at once and leaves the clean-up to the system. An engine would do what step 10 does.
+//! Everything that is made is held by an `Own`, which destroys it at the end of its scope: in the opposite order, and after an error as well. An
+//! engine has classes of its own for that.
 
+use std::cell::RefCell;
 use std::error::Error;
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
 use ash::vk;
@@ -50,8 +53,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let entry = unsafe { ash::Entry::load()? };
     let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
     let info = vk::InstanceCreateInfo::default().application_info(&application);
-    // SAFETY: the infos live through the call. Handles are destroyed in step 10, after the queue is idle; this holds for all below.
-    let instance = unsafe { entry.create_instance(&info, None)? };
+    // SAFETY: the infos live through the call. Handles are destroyed when nothing of them is in use any more, and children before what made
+    // them: see steps 9 and 10. This holds for all below.
+    let instance = unsafe { entry.create_instance(&info, None) };
+    let instance = Own::new(instance.map_err(failed("vkCreateInstance"))?, |instance| {
+        // SAFETY: as above, here and in all such functions below.
+        unsafe { instance.destroy_instance(None) };
+    });
     let (physical, support) = choose(&instance)?;
     // SAFETY: `physical` belongs to the live instance, which was made for Vulkan 1.2 or later.
     let driver = unsafe { Driver::query(&instance, physical) };
@@ -68,28 +76,39 @@ fn main() -> Result<(), Box<dyn Error>> {
     // SAFETY: `choose` saw that nothing is missing; the extensions are named; no other feature struct is chained.
     let info = unsafe { features.chain(info) };
     // SAFETY: the instance is live and the info complete.
-    let device = unsafe { instance.create_device(physical, &info, None)? };
+    let device = unsafe { instance.create_device(physical, &info, None) };
+    let device = Own::new(device.map_err(failed("vkCreateDevice"))?, |device| {
+        // SAFETY: see step 2.
+        unsafe { device.destroy_device(None) };
+    });
     // SAFETY: the device was created with one queue of this family.
     let queue = unsafe { device.get_device_queue(family, 0) };
-    let mut allocator = Allocator::new(&AllocatorCreateDesc {
-        instance: instance.clone(),
-        device: device.clone(),
+    let allocator = RefCell::new(Allocator::new(&AllocatorCreateDesc {
+        instance: (*instance).clone(),
+        device: (*device).clone(),
         physical_device: physical,
         debug_settings: Default::default(),
         buffer_device_address: false,
         allocation_sizes: Default::default(),
-    })?;
+    })?);
 
     // 3. The model on the device: buffers and descriptor sets, no commands yet. One `Layout` serves all surfaces of a device. The ring is the
     //    scratch memory that control shaders pass on; it bounds the memory, not the model: what does not fit is drawn in more batches.
     // SAFETY: the device has what `Support` asks for; allocator and layout are its own.
-    let layout = unsafe { Layout::new(&device)? };
-    let options = SurfaceOptions::default();
+    let layout = Own::new(unsafe { Layout::new(&device)? }, |layout| {
+        // SAFETY: see step 2.
+        unsafe { layout.destroy(&device) };
+    });
+    // Vertices are counted, so that step 9 can tell whether all have come. That is for a picture that must be right; a game would not.
+    let options = SurfaceOptions {
+        count_vertices: true,
+        ..SurfaceOptions::default()
+    };
     // SAFETY: as above.
-    let mut surface = unsafe {
+    let surface = unsafe {
         TessellatedSurface::new(
             &device,
-            &mut allocator,
+            &mut allocator.borrow_mut(),
             &layout,
             &model,
             prepared,
@@ -97,35 +116,54 @@ fn main() -> Result<(), Box<dyn Error>> {
             options,
         )?
     };
+    let mut surface = Own::new(surface, |surface| {
+        // SAFETY: see step 2.
+        unsafe { surface.destroy(&device, &mut allocator.borrow_mut()) };
+    });
 
     // 4. What is drawn into. Any render target will do; here two images and a buffer for the pixels.
     let colour_usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
     let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-    let colour = Image::new(&device, &mut allocator, COLOUR, colour_usage)?;
-    let depth = Image::new(&device, &mut allocator, DEPTH, depth_usage)?;
+    let colour = Image::new(&device, &allocator, COLOUR, colour_usage)?;
+    let depth = Image::new(&device, &allocator, DEPTH, depth_usage)?;
     // SAFETY: device and allocator belong together.
     let pixels = unsafe {
         Buffer::new(
             &device,
-            &mut allocator,
+            &mut allocator.borrow_mut(),
             "pixels",
             u64::from(WIDTH * HEIGHT * 4),
             vk::BufferUsageFlags::TRANSFER_DST,
             MemoryLocation::GpuToCpu,
         )?
     };
+    let pixels = Own::new(pixels, |pixels| {
+        // SAFETY: see step 2.
+        unsafe { pixels.destroy(&device, &mut allocator.borrow_mut()) };
+    });
 
     // 5. The render pass must let batches wait for one another: see `render_pass`.
-    let render_pass = render_pass(&device)?;
+    let render_pass = render_pass(&device).map_err(failed("vkCreateRenderPass"))?;
+    let render_pass = Own::new(render_pass, |pass| {
+        // SAFETY: see step 2.
+        unsafe { device.destroy_render_pass(pass, None) };
+    });
     let views = [colour.view, depth.view];
     let info = vk::FramebufferCreateInfo::default()
-        .render_pass(render_pass)
+        .render_pass(*render_pass)
         .attachments(&views)
         .width(WIDTH)
         .height(HEIGHT)
         .layers(1);
     // SAFETY: the views are of the formats that the pass declares.
-    let framebuffer = unsafe { device.create_framebuffer(&info, None)? };
+    let framebuffer = unsafe { device.create_framebuffer(&info, None) };
+    let framebuffer = Own::new(
+        framebuffer.map_err(failed("vkCreateFramebuffer"))?,
+        |framebuffer| {
+            // SAFETY: see step 2.
+            unsafe { device.destroy_framebuffer(framebuffer, None) };
+        },
+    );
 
     // 6. Pipelines: one a pass of the prepared model, from the modules that the crate brings. An engine with shaders of its own builds them
     //    from `gpu::shaders::source` and hands them in by `Pipelines::from_raw`. Hand over a pipeline cache where you have one.
@@ -134,7 +172,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         spacing: Spacing::FractionalEven,
     };
     let target = Target {
-        render_pass,
+        render_pass: *render_pass,
         samples: vk::SampleCountFlags::TYPE_1,
         // The tugboat's funnel is open: its inside is seen.
         cull: vk::CullModeFlags::NONE,
@@ -153,6 +191,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             Fill::Solid,
         )?
     };
+    let pipelines = Own::new(pipelines, |pipelines| {
+        // SAFETY: see step 2.
+        unsafe { pipelines.destroy(&device) };
+    });
 
     // 7. The batches of this cut. They depend on the level and the ring's size, so keep them while the level stays.
     let batches = surface.batches(cut)?;
@@ -161,16 +203,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let info = vk::CommandPoolCreateInfo::default().queue_family_index(family);
     // SAFETY: the family is the queue's, here and in all that is recorded below: the device made everything and everything lives until the
     // queue is idle. What each `cmd_` function needs beyond that is said where it is called.
-    let pool = unsafe { device.create_command_pool(&info, None)? };
+    let pool = unsafe { device.create_command_pool(&info, None) };
+    let pool = Own::new(pool.map_err(failed("vkCreateCommandPool"))?, |pool| {
+        // SAFETY: see step 2.
+        unsafe { device.destroy_command_pool(pool, None) };
+    });
     let info = vk::CommandBufferAllocateInfo::default()
-        .command_pool(pool)
+        .command_pool(*pool)
         .command_buffer_count(1);
     // SAFETY: the pool is ours.
-    let cmd = unsafe { device.allocate_command_buffers(&info)?[0] };
+    let cmd = unsafe { device.allocate_command_buffers(&info) };
+    let cmd = cmd.map_err(failed("vkAllocateCommandBuffers"))?[0];
     let begin =
         vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
     // SAFETY: the command buffer is new.
-    unsafe { device.begin_command_buffer(cmd, &begin)? };
+    unsafe { device.begin_command_buffer(cmd, &begin) }.map_err(failed("vkBeginCommandBuffer"))?;
     // SAFETY: recording, outside of a render pass. The copies are made visible to the draws by the function itself.
     unsafe {
         surface.cmd_upload(&device, cmd);
@@ -182,8 +229,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let clears = clear_values();
     let begin = vk::RenderPassBeginInfo::default()
-        .render_pass(render_pass)
-        .framebuffer(framebuffer)
+        .render_pass(*render_pass)
+        .framebuffer(*framebuffer)
         .render_area(area)
         .clear_values(&clears);
     let viewport = vk::Viewport {
@@ -229,17 +276,33 @@ fn main() -> Result<(), Box<dyn Error>> {
             &[],
             &[],
         );
-        device.end_command_buffer(cmd)?;
+        device
+            .end_command_buffer(cmd)
+            .map_err(failed("vkEndCommandBuffer"))?;
     }
 
-    // 9. Submitting and waiting are the engine's business. Afterwards the staging memory can go, unless positions will be replaced.
+    // 9. Submitting and waiting are the engine's business. From here on nothing may be destroyed that the queue may still use, and a wait that
+    //    fails says nothing about the queue: so the first thing that goes, whatever happens, waits once more. A lost device counts as idle
+    //    (Vulkan spec, "Lost Device"). Where even this wait fails nothing is known, and the program leaves without destroying anything.
+    let idle = Own::new((), |()| {
+        // SAFETY: nobody else uses the device.
+        match unsafe { device.device_wait_idle() } {
+            Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST) => {}
+            Err(_) => std::process::exit(1),
+        }
+    });
     let commands = [cmd];
     let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
-    // SAFETY: the command buffer has been ended; nobody else uses the queue.
+    // SAFETY: the command buffer has been ended; nobody else uses the queue. The staging memory can go once it has been copied, unless
+    // positions will be replaced.
     unsafe {
-        device.queue_submit(queue, &submit, vk::Fence::null())?;
-        device.queue_wait_idle(queue)?;
-        surface.finish_upload(&device, &mut allocator);
+        device
+            .queue_submit(queue, &submit, vk::Fence::null())
+            .map_err(failed("vkQueueSubmit"))?;
+        device
+            .queue_wait_idle(queue)
+            .map_err(failed("vkQueueWaitIdle"))?;
+        surface.finish_upload(&device, &mut allocator.borrow_mut());
     }
     // A control shader may run more than once for a patch. Then the slots of a batch can run out: patches that got none were left out and
     // counted. An engine draws such a frame again with `Slots::Host`, which does not depend on that, or simply always uses it.
@@ -247,6 +310,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if counters.overflows > 0 {
         return Err(format!("{} patches found no room in the ring", counters.overflows).into());
     }
+    // A driver that loses draws says nothing. Whether all vertices came that were predicted is known because they were counted.
+    surface.arrival(cut, &batches).check()?;
     write_png(pixels.bytes())?;
     println!(
         "headless.png: {} batches, {} points through the ring, on {}",
@@ -255,30 +320,54 @@ fn main() -> Result<(), Box<dyn Error>> {
         driver.info
     );
 
-    // 10. Everything goes in the opposite order. The queue is idle. The library's objects borrow nothing, so they are destroyed explicitly.
-    // SAFETY: nothing is in use, each handle is destroyed once, and children go before what made them.
-    unsafe {
-        device.destroy_command_pool(pool, None);
-        pipelines.destroy(&device);
-        device.destroy_framebuffer(framebuffer, None);
-        device.destroy_render_pass(render_pass, None);
-        pixels.destroy(&device, &mut allocator);
-        depth.destroy(&device, &mut allocator)?;
-        colour.destroy(&device, &mut allocator)?;
-        surface.destroy(&device, &mut allocator);
-        layout.destroy(&device);
-        drop(allocator);
-        device.destroy_device(None);
-        instance.destroy_instance(None);
-    }
+    // 10. Everything goes in the opposite order, when the device is idle. The library's objects borrow nothing, so each is destroyed
+    //     explicitly, by the `Own` that holds it.
+    drop(idle);
     Ok(())
+}
+
+/// Holds something, and destroys it at the end of its scope.
+struct Own<T, F: FnOnce(T)>(Option<(T, F)>);
+
+impl<T, F: FnOnce(T)> Own<T, F> {
+    fn new(made: T, destroy: F) -> Own<T, F> {
+        Own(Some((made, destroy)))
+    }
+}
+
+impl<T, F: FnOnce(T)> Deref for Own<T, F> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.0.as_ref().expect("there until it is dropped").0
+    }
+}
+
+impl<T, F: FnOnce(T)> DerefMut for Own<T, F> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.0.as_mut().expect("there until it is dropped").0
+    }
+}
+
+impl<T, F: FnOnce(T)> Drop for Own<T, F> {
+    fn drop(&mut self) {
+        if let Some((made, destroy)) = self.0.take() {
+            destroy(made);
+        }
+    }
+}
+
+/// For `map_err`: which call failed, and how.
+fn failed(call: &'static str) -> impl Fn(vk::Result) -> String {
+    move |code| format!("{call} failed: {code:?}")
 }
 
 /// The first device that lacks nothing.
 fn choose(instance: &ash::Instance) -> Result<(vk::PhysicalDevice, Support), Box<dyn Error>> {
     let mut lacking = Vec::new();
     // SAFETY: the instance is live.
-    for physical in unsafe { instance.enumerate_physical_devices()? } {
+    let all = unsafe { instance.enumerate_physical_devices() };
+    for physical in all.map_err(failed("vkEnumeratePhysicalDevices"))? {
         // SAFETY: `physical` belongs to the live instance, which was made for Vulkan 1.2 or later.
         let support = unsafe { Support::query(instance, physical) };
         if support.missing().is_empty() {
@@ -386,20 +475,29 @@ fn extent() -> vk::Extent3D {
     }
 }
 
-/// An image with its memory and view.
-struct Image {
+/// An image with its memory and view. Null until made: if a step fails, what was made before it goes all the same.
+struct Image<'a> {
+    device: &'a ash::Device,
+    allocator: &'a RefCell<Allocator>,
     raw: vk::Image,
     view: vk::ImageView,
-    memory: Allocation,
+    memory: Option<Allocation>,
 }
 
-impl Image {
+impl<'a> Image<'a> {
     fn new(
-        device: &ash::Device,
-        allocator: &mut Allocator,
+        device: &'a ash::Device,
+        allocator: &'a RefCell<Allocator>,
         format: vk::Format,
         usage: vk::ImageUsageFlags,
-    ) -> Result<Image, Box<dyn Error>> {
+    ) -> Result<Image<'a>, Box<dyn Error>> {
+        let mut image = Image {
+            device,
+            allocator,
+            raw: vk::Image::null(),
+            view: vk::ImageView::null(),
+            memory: None,
+        };
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
@@ -409,17 +507,21 @@ impl Image {
             .samples(vk::SampleCountFlags::TYPE_1)
             .usage(usage);
         // SAFETY: the device is live and knows the format.
-        let raw = unsafe { device.create_image(&info, None)? };
-        let memory = allocator.allocate(&AllocationCreateDesc {
+        let raw = unsafe { device.create_image(&info, None) };
+        image.raw = raw.map_err(failed("vkCreateImage"))?;
+        let memory = allocator.borrow_mut().allocate(&AllocationCreateDesc {
             name: "attachment",
             // SAFETY: the image is the device's.
-            requirements: unsafe { device.get_image_memory_requirements(raw) },
+            requirements: unsafe { device.get_image_memory_requirements(image.raw) },
             location: MemoryLocation::GpuOnly,
             linear: false,
             allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        })?;
+        });
+        let memory = memory.map_err(|error| format!("vkAllocateMemory failed: {error}"))?;
+        let memory = image.memory.insert(memory);
         // SAFETY: the memory meets the image's requirements and is bound to nothing else.
-        unsafe { device.bind_image_memory(raw, memory.memory(), memory.offset())? };
+        unsafe { device.bind_image_memory(image.raw, memory.memory(), memory.offset()) }
+            .map_err(failed("vkBindImageMemory"))?;
         let aspect = match format {
             DEPTH => vk::ImageAspectFlags::DEPTH,
             _ => vk::ImageAspectFlags::COLOR,
@@ -429,28 +531,28 @@ impl Image {
             .level_count(1)
             .layer_count(1);
         let info = vk::ImageViewCreateInfo::default()
-            .image(raw)
+            .image(image.raw)
             .view_type(vk::ImageViewType::TYPE_2D)
             .format(format)
             .subresource_range(range);
         // SAFETY: the image is bound; format and aspect are its own.
-        let view = unsafe { device.create_image_view(&info, None)? };
-        Ok(Image { raw, view, memory })
+        let view = unsafe { device.create_image_view(&info, None) };
+        image.view = view.map_err(failed("vkCreateImageView"))?;
+        Ok(image)
     }
+}
 
-    /// # Safety
-    /// `device` and `allocator` made it, and no submitted command still uses it.
-    unsafe fn destroy(
-        self,
-        device: &ash::Device,
-        allocator: &mut Allocator,
-    ) -> Result<(), Box<dyn Error>> {
-        // SAFETY: this function's contract.
+impl Drop for Image<'_> {
+    fn drop(&mut self) {
+        // SAFETY: see steps 2 and 9; null handles are allowed.
         unsafe {
-            device.destroy_image_view(self.view, None);
-            device.destroy_image(self.raw, None);
+            self.device.destroy_image_view(self.view, None);
+            self.device.destroy_image(self.raw, None);
         }
-        Ok(allocator.free(self.memory)?)
+        if let Some(memory) = self.memory.take() {
+            let freed = self.allocator.borrow_mut().free(memory);
+            freed.expect("memory goes back to the allocator it came from");
+        }
     }
 }
 

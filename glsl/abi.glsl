@@ -16,7 +16,7 @@ const uint BINDING_SCRATCH = 4u;
 const uint BINDING_COUNTERS = 5u;
 // Set 0, binding: `PatchDraw` records, what the host decides about each patch.
 const uint BINDING_DRAWS = 6u;
-// Set 0, binding: the number of captured vertices, then the `Captured` records.
+// Set 0, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
 const uint BINDING_CAPTURE = 7u;
 // Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
 const uint BINDING_POINTS = 8u;
@@ -112,6 +112,8 @@ const uint FRAME_CAPTURE = 4u;
 const uint FRAME_PARITY = 8u;
 // Frame flag: patches have levels of their own, else all the frame's.
 const uint FRAME_ADAPTIVE = 16u;
+// Frame flag: the evaluation shader counts the vertices of each patch: in the `patch_number` of that patch's `Captured` record.
+const uint FRAME_COUNT = 32u;
 // The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
 const uint PATTERN_SHIFT = 7u;
 // Rows of a patch's lattice that the geometry shader can make: one an invocation.

@@ -118,7 +118,7 @@ constants! {
     BINDING_COUNTERS = 5;
     /// Set 0, binding: `PatchDraw` records, what the host decides about each patch.
     BINDING_DRAWS = 6;
-    /// Set 0, binding: the number of captured vertices, then the `Captured` records.
+    /// Set 0, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
     BINDING_CAPTURE = 7;
     /// Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
     BINDING_POINTS = 8;
@@ -221,6 +221,8 @@ constants! {
     FRAME_PARITY = 8;
     /// Frame flag: patches have levels of their own, else all the frame's.
     FRAME_ADAPTIVE = 16;
+    /// Frame flag: the evaluation shader counts the vertices of each patch: in the `patch_number` of that patch's `Captured` record.
+    FRAME_COUNT = 32;
 
     /// The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
     PATTERN_SHIFT = 7;

@@ -108,13 +108,35 @@ pub enum Error {
     /// No Vulkan device can do the work; the text says what each one lacks.
     #[error("no suitable Vulkan device: {}", visible(.0))]
     NoDevice(String),
-    /// A Vulkan call failed.
-    #[error("{call} failed: {result}")]
+    /// The host or the device has no memory left for a Vulkan call.
+    #[error("{call} failed: {result}; free memory, or ask for less: a lower level, a smaller picture or mesh")]
+    OutOfMemory {
+        /// The call's name.
+        call: &'static str,
+        /// The result code's name.
+        result: String,
+    },
+    /// The driver gave the device up. Nothing that was made of it can be used any more, but all of it must still be destroyed.
+    #[error("{call} failed: {result}; try again, and if it stays so choose another device or update its driver")]
+    DeviceLost {
+        /// The call that told.
+        call: &'static str,
+        /// The result code's name.
+        result: String,
+    },
+    /// Another failure of a Vulkan call.
+    #[error("{call} failed: {result}; choose another device, or update its driver")]
     Vulkan {
         /// The call's name.
         call: &'static str,
         /// The result code's name.
         result: String,
+    },
+    /// Something that was drawn did not arrive: what comes of it would be wrong.
+    #[error("the device lost {what}; choose another device, or update its driver")]
+    Lost {
+        /// What is missing, and of how much.
+        what: String,
     },
     /// A result was refused because it would be wrong (validation messages, lost patches).
     #[error("{0}")]
@@ -136,7 +158,12 @@ impl Error {
         match self {
             Error::Input { .. } | Error::File { .. } | Error::Option { .. } => 2,
             Error::NoDevice(_) => 3,
-            Error::Vulkan { .. } | Error::Refused(_) | Error::Write { .. } => 1,
+Error::OutOfMemory { .. }
+            | Error::DeviceLost { .. }
+            | Error::Vulkan { .. }
+            | Error::Lost { .. }
+            | Error::Refused(_)
+            | Error::Write { .. } => 1,
         }
     }
 }

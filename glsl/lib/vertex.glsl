@@ -50,6 +50,7 @@ void write_vertex(Patch record, uint number, vec2 uv, Point point) {
     gl_Position = frame.view_projection * vec4(point.position, 1.0);
     if ((frame.flags & FRAME_PARITY) != 0u) gl_Position = amplified(gl_Position, point.position);
     if ((frame.flags & FRAME_CAPTURE) != 0u) capture(number, uv, point);
+    if ((frame.flags & FRAME_COUNT) != 0u) atomicAdd(captured[number].patch_number, 1u);
 }
 
 #endif

@@ -112,6 +112,9 @@ impl TessellatedSurface {
             );
             device.cmd_fill_buffer(cmd, self.buffers.counters().raw(), 0, vk::WHOLE_SIZE, 0);
             device.cmd_fill_buffer(cmd, self.buffers.capture().raw(), 0, 4, 0);
+            for counts in self.buffers.counts() {
+                device.cmd_fill_buffer(cmd, counts.raw(), 0, vk::WHOLE_SIZE, 0);
+            }
             cmd_make_visible(device, cmd, transfer | stages, stages, RING_ACCESS);
         }
     }
@@ -292,7 +295,8 @@ impl TessellatedSurface {
             ) | flag(self.options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
                 | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE)
                 | flag(self.options.amplify_cracks, abi::FRAME_PARITY)
-                | flag(!self.tagged.is_empty(), abi::FRAME_ADAPTIVE),
+                | flag(!self.tagged.is_empty(), abi::FRAME_ADAPTIVE)
+                | flag(self.options.count_vertices, abi::FRAME_COUNT),
             first_patch: draw.first,
             end_patch: batch.end,
             patches_per_instance: draw.patches_per_instance,

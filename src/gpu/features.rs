@@ -163,9 +163,9 @@ impl Support {
             features = features.push_next(&mut scalar).push_next(&mut model);
         }
         let core13 = self.api_version >= vk::API_VERSION_1_3;
-        // SAFETY: the caller's instance and physical device.
-        let by_extension =
-            !core13 && unsafe { has_extension(instance, physical, khr::maintenance4::NAME) };
+        // SAFETY: the caller's instance and physical device. One that fails to answer goes without: we can do without.
+        let by_extension = !core13
+            && unsafe { has_extension(instance, physical, khr::maintenance4::NAME) } == Ok(true);
         if core13 || by_extension {
             features = features.push_next(&mut maintenance4);
         }
@@ -237,7 +237,10 @@ impl FeatureChain {
     }
 }
 
-/// Whether `physical` has the device extension `name`; a device that fails to answer has none.
+/// Whether `physical` has the device extension `name`.
+///
+/// # Errors
+/// What `vkEnumerateDeviceExtensionProperties` returns.
 ///
 /// # Safety
 /// `physical` belongs to the live `instance`.
@@ -245,12 +248,11 @@ pub(crate) unsafe fn has_extension(
     instance: &ash::Instance,
     physical: vk::PhysicalDevice,
     name: &std::ffi::CStr,
-) -> bool {
+) -> std::result::Result<bool, vk::Result> {
     // SAFETY: the caller's instance and physical device.
-    let all = unsafe { instance.enumerate_device_extension_properties(physical) };
-    all.unwrap_or_default()
-        .iter()
-        .any(|extension| extension.extension_name_as_c_str() == Ok(name))
+    let all = unsafe { instance.enumerate_device_extension_properties(physical) }?;
+    let named = |extension: &vk::ExtensionProperties| extension.extension_name_as_c_str() == Ok(name);
+    Ok(all.iter().any(named))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! The engine owns instance, device, queue and allocator; nothing here submits or waits.
 
+mod arrival;
 mod backend;
 mod batches;
 pub mod buffer;
@@ -19,6 +20,7 @@ pub mod shaders;
 mod surface;
 pub mod workaround;
 
+pub use arrival::Arrival;
 pub use backend::Backend;
 pub use batches::{Batch, Cut};
 pub use buffer::Buffer;

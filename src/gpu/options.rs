@@ -24,6 +24,9 @@ pub struct SurfaceOptions {
     pub slots: Slots,
     /// Vertices that can be captured at once; 0 for none.
     pub capture_vertices: u32,
+    /// Counts the vertices of each patch as they are evaluated, so that [`arrival`](super::TessellatedSurface::arrival) tells whether the device
+    /// lost any. Costs an atomic operation a vertex. Not together with a capture, which tells as much.
+    pub count_vertices: bool,
     /// The greatest level that will be drawn, 1..=64; for [`Backend::Geometry`] at most 32.
     pub greatest_level: f32,
     /// How many times the batches are drawn after one [`cmd_prepare`](super::TessellatedSurface::cmd_prepare); see
@@ -39,13 +42,14 @@ pub struct SurfaceOptions {
 }
 
 impl Default for SurfaceOptions {
-    /// The tessellator, a ring of 1 MiB with counters, no capture, every level, barriers by `cmd_draw`.
+    /// The tessellator, a ring of 1 MiB with counters, no capture, no counts, every level, barriers by `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
             backend: Backend::Tessellator,
             ring_bytes: 1 << 20,
             slots: Slots::Counter,
             capture_vertices: 0,
+            count_vertices: false,
             rounds: 1,
             greatest_level: 64.0,
             barriers: true,

@@ -7,7 +7,7 @@ use gpu_allocator::vulkan::Allocator;
 use rustc_hash::FxHashMap;
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::backend::Backend;
 use crate::gpu::batches::{Batch, Cut, batches};
 use crate::gpu::layout::BINDINGS;
@@ -50,6 +50,8 @@ pub(super) struct Buffers {
     counters: usize,
     counted: usize,
     capture: usize,
+    /// A pass each, in the place of the capture; empty where nothing is counted.
+    counts: Vec<usize>,
     /// A pass each: patches, controls, texture, draws, instances, the method's tables.
     passes: Vec<Vec<usize>>,
 }
@@ -79,6 +81,13 @@ impl TessellatedSurface {
         options: SurfaceOptions,
     ) -> Result<TessellatedSurface> {
         options.backend.check(&prepared, options.greatest_level)?;
+        if options.count_vertices && options.capture_vertices > 0 {
+            return Err(Error::Option {
+                option: "count_vertices",
+                problem: "vertices are captured already".into(),
+                remedy: "count them or capture them".into(),
+            });
+        }
         let counters = counter_count(&prepared, options)?;
         let mut surface = TessellatedSurface {
             prepared,
@@ -146,6 +155,13 @@ impl TessellatedSurface {
                 MemoryLocation::GpuToCpu,
             )?;
             for pass in &self.prepared.passes {
+                if self.options.count_vertices {
+                    let size = 4 + (size_of::<abi::Captured>() * pass.patches.len()) as u64;
+                    let counted = storage | vk::BufferUsageFlags::TRANSFER_DST;
+                    let host = MemoryLocation::GpuToCpu;
+                    let counts = maker.buffer("counts", size, counted, host)?;
+                    maker.buffers.counts.push(counts);
+                }
                 let tables = maker.pass(pass)?;
                 maker.buffers.passes.push(tables);
             }
@@ -420,7 +436,7 @@ impl Buffers {
             abi::BINDING_COUNTERS => self.counters,
             abi::BINDING_DRAWS => tables[DRAWS],
             abi::BINDING_INSTANCES => tables[INSTANCES],
-            abi::BINDING_CAPTURE => self.capture,
+            abi::BINDING_CAPTURE => *self.counts.get(pass).unwrap_or(&self.capture),
             abi::BINDING_POINTS => self.points,
             abi::BINDING_POINT_ROWS => self.point_rows,
             abi::BINDING_POINT_TERMS => self.point_terms,
@@ -441,6 +457,11 @@ impl Buffers {
 
     pub(super) fn capture(&self) -> &Buffer {
         &self.all[self.capture]
+    }
+
+    /// What counts the vertices of each pass; none where they are not counted.
+    pub(super) fn counts(&self) -> impl Iterator<Item = &Buffer> {
+        self.counts.iter().map(|&number| &self.all[number])
     }
 
     /// What is to be copied from the staging buffer, and where to.

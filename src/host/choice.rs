@@ -59,10 +59,15 @@ pub fn devices(instance: &Instance) -> Result<Vec<DeviceInfo>> {
         vk::Result::ERROR_INITIALIZATION_FAILED => Error::NoDevice(
             "no Vulkan driver works here; install one (Debian: mesa-vulkan-drivers)".into(),
         ),
-        code => failed("vkEnumeratePhysicalDevices")(code),
+        code => unavailable("vkEnumeratePhysicalDevices")(code),
     })?;
     let describe = |(index, physical)| describe(instance, index, physical);
     Ok(all.into_iter().enumerate().map(describe).collect())
+}
+
+/// For `map_err`: without what `call` would give there is no device.
+pub(super) fn unavailable(call: &'static str) -> impl Fn(vk::Result) -> Error {
+    move |code| Error::NoDevice(failed(call)(code).to_string())
 }
 
 fn describe(instance: &Instance, index: usize, physical: vk::PhysicalDevice) -> DeviceInfo {

@@ -18,16 +18,26 @@ pub struct ColouredVertex {
     pub colour: [f32; 4],
 }
 
-/// Triangles on the device with the pipeline that draws them; colours are linear between the vertices.
+/// Triangles on the device with the pipeline that draws them; colours are linear between the vertices. Vertices leave a mark, so that one can
+/// tell whether they came.
 ///
-/// Projected by the host, so that there are neither descriptors nor push constants: what is drawn once gains nothing from them.
+/// Projected by the host, so that there are no push constants: what is drawn once gains nothing from them.
 pub struct ColouredTriangles {
     device: Device,
+    /// Vertices, indices, marks.
     buffers: Vec<Buffer>,
+    set_layout: vk::DescriptorSetLayout,
+    pool: vk::DescriptorPool,
+    set: vk::DescriptorSet,
     layout: vk::PipelineLayout,
     pipeline: vk::Pipeline,
     indices: u32,
+    /// Vertices that triangles have.
+    used: usize,
 }
+
+/// Where the marks stand in [`ColouredTriangles::buffers`].
+const MARKS: usize = 2;
 
 impl ColouredTriangles {
     /// Brings triangles to the device, to be drawn into `target` or one like it.
@@ -53,21 +63,25 @@ impl ColouredTriangles {
         let mut drawn = ColouredTriangles {
             device: device.clone(),
             buffers: Vec::new(),
+            set_layout: vk::DescriptorSetLayout::null(),
+            pool: vk::DescriptorPool::null(),
+            set: vk::DescriptorSet::null(),
             layout: vk::PipelineLayout::null(),
             pipeline: vk::Pipeline::null(),
             indices: 3 * triangles.len() as u32,
+            used: used(vertices.len(), triangles),
         };
+        use MemoryLocation::{CpuToGpu, GpuToCpu};
         use vk::BufferUsageFlags as Usage;
-        drawn.add_buffer(
-            "vertices",
-            Usage::VERTEX_BUFFER,
+        let (of_vertices, of_triangles) = (
             bytemuck::cast_slice(vertices),
-        )?;
-        drawn.add_buffer(
-            "indices",
-            Usage::INDEX_BUFFER,
             bytemuck::cast_slice(triangles),
-        )?;
+        );
+        drawn.add_buffer("vertices", Usage::VERTEX_BUFFER, CpuToGpu, of_vertices)?;
+        drawn.add_buffer("indices", Usage::INDEX_BUFFER, CpuToGpu, of_triangles)?;
+        let marks = vec![0; 4 * vertices.len().max(1)];
+        drawn.add_buffer("marks", Usage::STORAGE_BUFFER, GpuToCpu, &marks)?;
+        drawn.make_set()?;
         drawn.make_pipeline(target)?;
         Ok(drawn)
     }
@@ -76,20 +90,61 @@ impl ColouredTriangles {
     ///
     /// # Safety
     /// `cmd` is recording on this device, inside a render pass that is compatible with the target's, with viewport and scissor set. They
-    /// stay alive until the commands have finished.
+    /// stay alive until the commands have finished. Drawn once: marks are not taken back.
     pub unsafe fn cmd_draw(&self, cmd: vk::CommandBuffer) {
         let device = self.device.raw();
         // SAFETY: this function's contract; every index is below the number of vertices, as the caller gave them.
         unsafe {
-            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.pipeline);
+            let graphics = vk::PipelineBindPoint::GRAPHICS;
+            device.cmd_bind_pipeline(cmd, graphics, self.pipeline);
+            device.cmd_bind_descriptor_sets(cmd, graphics, self.layout, 0, &[self.set], &[]);
             device.cmd_bind_vertex_buffers(cmd, 0, &[self.buffers[0].raw()], &[0]);
             device.cmd_bind_index_buffer(cmd, self.buffers[1].raw(), 0, vk::IndexType::UINT32);
             device.cmd_draw_indexed(cmd, self.indices, 1, 0, 0, 0);
         }
     }
 
-    fn add_buffer(&mut self, name: &str, usage: vk::BufferUsageFlags, bytes: &[u8]) -> Result<()> {
-        let (size, location) = (bytes.len() as u64, MemoryLocation::CpuToGpu);
+    /// Makes the marks visible to the host, for [`check`](Self::check).
+    ///
+    /// # Safety
+    /// `cmd` is recording on this device, after the draw and outside of a render pass.
+    pub unsafe fn cmd_read_back(&self, cmd: vk::CommandBuffer) {
+        let written = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::HOST_READ);
+        let (from, to) = (
+            vk::PipelineStageFlags::VERTEX_SHADER,
+            vk::PipelineStageFlags::HOST,
+        );
+        let none = vk::DependencyFlags::empty();
+        let device = self.device.raw();
+        // SAFETY: this function's contract.
+        unsafe { device.cmd_pipeline_barrier(cmd, from, to, none, &[written], &[], &[]) };
+    }
+
+    /// Refuses what was drawn if not every vertex came. Meaningful when [`cmd_read_back`](Self::cmd_read_back) has been executed.
+    ///
+    /// # Errors
+    /// [`Error::Lost`].
+    pub fn check(&self) -> Result<()> {
+        let marks: &[u32] = bytemuck::cast_slice(self.buffers[MARKS].bytes());
+        let came = marks.iter().filter(|&&mark| mark != 0).count();
+        if came >= self.used {
+            return Ok(());
+        }
+        Err(Error::Lost {
+            what: format!("{} of {} coloured vertices", self.used - came, self.used),
+        })
+    }
+
+    fn add_buffer(
+        &mut self,
+        name: &str,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+        bytes: &[u8],
+    ) -> Result<()> {
+        let size = bytes.len() as u64;
         let device = self.device.raw();
         let allocator = &mut self.device.allocator();
         // SAFETY: device and allocator belong together; the usage needs no feature.
@@ -99,9 +154,50 @@ impl ColouredTriangles {
         Ok(())
     }
 
+    /// The set with the marks.
+    fn make_set(&mut self) -> Result<()> {
+        let device = self.device.raw();
+        let kind = vk::DescriptorType::STORAGE_BUFFER;
+        let bindings = [vk::DescriptorSetLayoutBinding::default()
+            .descriptor_type(kind)
+            .descriptor_count(1)
+            .stage_flags(vk::ShaderStageFlags::VERTEX)];
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the device is live, here and below.
+        self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
+            .map_err(failed("vkCreateDescriptorSetLayout"))?;
+        let sizes = [vk::DescriptorPoolSize::default()
+            .ty(kind)
+            .descriptor_count(1)];
+        let info = vk::DescriptorPoolCreateInfo::default()
+            .max_sets(1)
+            .pool_sizes(&sizes);
+        // SAFETY: as above.
+        self.pool = unsafe { device.create_descriptor_pool(&info, None) }
+            .map_err(failed("vkCreateDescriptorPool"))?;
+        let layouts = [self.set_layout];
+        let info = vk::DescriptorSetAllocateInfo::default()
+            .descriptor_pool(self.pool)
+            .set_layouts(&layouts);
+        // SAFETY: the pool was made for one set of this layout.
+        self.set = unsafe { device.allocate_descriptor_sets(&info) }
+            .map_err(failed("vkAllocateDescriptorSets"))?[0];
+        let marks = [vk::DescriptorBufferInfo::default()
+            .buffer(self.buffers[MARKS].raw())
+            .range(vk::WHOLE_SIZE)];
+        let write = vk::WriteDescriptorSet::default()
+            .dst_set(self.set)
+            .descriptor_type(kind)
+            .buffer_info(&marks);
+        // SAFETY: set and buffer are of this device and in no use yet.
+        unsafe { device.update_descriptor_sets(&[write], &[]) };
+        Ok(())
+    }
+
     fn make_pipeline(&mut self, target: &OffscreenTarget) -> Result<()> {
         let device = self.device.raw();
-        let info = vk::PipelineLayoutCreateInfo::default();
+        let sets = [self.set_layout];
+        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         // SAFETY: the device is live.
         self.layout = unsafe { device.create_pipeline_layout(&info, None) }
             .map_err(failed("vkCreatePipelineLayout"))?;
@@ -128,11 +224,22 @@ impl Drop for ColouredTriangles {
         unsafe {
             device.destroy_pipeline(self.pipeline, None);
             device.destroy_pipeline_layout(self.layout, None);
+            device.destroy_descriptor_pool(self.pool, None);
+            device.destroy_descriptor_set_layout(self.set_layout, None);
             for buffer in self.buffers.drain(..) {
                 buffer.destroy(device, &mut allocator);
             }
         }
     }
+}
+
+/// How many of the vertices some triangle has.
+fn used(vertices: usize, triangles: &[[u32; 3]]) -> usize {
+    let mut is_used = vec![false; vertices];
+    for &vertex in triangles.iter().flatten() {
+        is_used[vertex as usize] = true;
+    }
+    is_used.into_iter().filter(|&used| used).count()
 }
 
 /// A shader module that goes when the pipeline is made.

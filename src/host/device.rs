@@ -4,15 +4,19 @@ use crate::error::{Error, Result};
 use crate::gpu::features::has_extension;
 use crate::gpu::{ExtraFeatures, FeatureChain, failed};
 use crate::host::Instance;
-use crate::host::choice::{DeviceInfo, choose, devices};
+use crate::host::choice::{DeviceInfo, choose, devices, unavailable};
 use ash::{khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long [`Device::submit`] waits. Generous: a software device may well draw for a minute.
 const PATIENCE: Duration = Duration::from_secs(300);
+
+/// How often a wait that failed is tried again, and how long after. Memory that lacked may be there a moment later.
+const TRIES: u32 = 8;
+const PAUSE: Duration = Duration::from_millis(25);
 
 /// A Vulkan device, its graphics queue and its memory. Clones share it; it goes with the last of them.
 #[derive(Clone)]
@@ -35,8 +39,8 @@ struct Logical {
 
 impl Drop for Logical {
     fn drop(&mut self) {
-        // SAFETY: the last owner goes, so nobody submits. Queues are idle: each submission was waited for (one that ran out
-        // of patience keeps the device alive for good).
+        // SAFETY: the last owner goes, so nobody submits. Queues are idle: each submission was waited for (one whose end is not known
+        // keeps the device alive for good).
         unsafe { self.raw.destroy_device(None) };
     }
 }
@@ -54,7 +58,7 @@ impl Device {
     /// As [`Device::open`], with features that nothing here needs.
     ///
     /// # Errors
-    /// As [`Device::open`]; [`Error::Vulkan`] when the device lacks one of them.
+    /// As [`Device::open`], also when the device lacks one of them.
     pub fn open_with(
         instance: &Instance,
         selector: Option<&str>,
@@ -124,7 +128,8 @@ impl Device {
         allocator.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether a submission ran out of patience. What it used may still be in use and must not be destroyed.
+    /// Whether a submission ran out of patience, or it cannot be known whether it has ended. What it used may still be in use and must not be
+    /// destroyed.
     pub fn is_hung(&self) -> bool {
         self.0.hung.load(Ordering::Acquire)
     }
@@ -132,7 +137,8 @@ impl Device {
     /// Records commands, submits them and waits until they are done, at most five minutes.
     ///
     /// `record` gets a primary command buffer outside of any render pass, so it may reset queries, fill buffers and begin
-    /// passes. If it fails, nothing is submitted.
+    /// passes. If it fails, nothing is submitted. Whatever fails, nothing of it runs any more when this returns, unless the device
+    /// [is hung](Device::is_hung).
     pub fn submit<T>(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
         self.submit_within(PATIENCE, record)
     }
@@ -140,7 +146,7 @@ impl Device {
     /// As [`Device::submit`], with a patience of one's own.
     ///
     /// When it runs out the error is `vkWaitForFences failed: TIMEOUT`, [`Device::is_hung`] turns true, and the device is
-    /// never destroyed: destroying what a queue still uses is undefined.
+    /// never destroyed: destroying what a queue still uses is undefined. The same where no wait succeeds, for lack of memory, say.
     pub fn submit_within<T>(
         &self,
         patience: Duration,
@@ -162,30 +168,83 @@ impl Device {
     fn submit_and_wait(&self, once: OneShot<'_>, patience: Duration) -> Result<()> {
         let buffers = [once.cmd];
         let submit = vk::SubmitInfo::default().command_buffers(&buffers);
-        {
+        let submitted = {
             let queue = self.queue();
             // SAFETY: the queue is locked; the command buffer has been ended and is submitted once; the fence is unsignalled.
             unsafe { self.raw().queue_submit(*queue, &[submit], once.fence) }
-                .map_err(failed("vkQueueSubmit"))?;
-        }
-        let nanoseconds = u64::try_from(patience.as_nanos()).unwrap_or(u64::MAX);
-        // SAFETY: the fence is ours.
-        let waited = unsafe { self.raw().wait_for_fences(&[once.fence], true, nanoseconds) };
-        match waited {
-            Err(vk::Result::TIMEOUT) => {
+        };
+        let finished = match submitted {
+            Ok(()) => self.wait(once.fence, patience),
+            Err(code) => Err(Unfinished {
+                error: failed("vkQueueSubmit")(code),
+                // For what is pending, a loss counts as success; after any other failure nothing is (Vulkan spec, "Lost Device" and
+                // vkQueueSubmit).
+                ended: code != vk::Result::ERROR_DEVICE_LOST || self.becomes_idle(),
+            }),
+        };
+        finished.map_err(|unfinished| {
+            if !unfinished.ended {
                 self.0.hung.store(true, Ordering::Release);
-                // Still in use: neither the commands nor the device may go.
+                // May still be in use: neither the commands nor the device may go.
                 std::mem::forget(once);
                 std::mem::forget(self.clone());
-                Err(Error::Vulkan {
+            }
+            unfinished.error
+        })
+    }
+
+    /// Waits for the fence of a submission. A wait that fails says nothing about the submission, so it is tried again.
+    fn wait(&self, fence: vk::Fence, patience: Duration) -> std::result::Result<(), Unfinished> {
+        let start = Instant::now();
+        let wait = || {
+            let left = patience.saturating_sub(start.elapsed());
+            let nanoseconds = u64::try_from(left.as_nanos()).unwrap_or(u64::MAX);
+            // SAFETY: the fence is the caller's.
+            unsafe { self.raw().wait_for_fences(&[fence], true, nanoseconds) }
+        };
+        let mut waited = wait();
+        let Err(first) = waited else { return Ok(()) };
+        for _ in 0..TRIES {
+            let (late, lost) = (vk::Result::TIMEOUT, vk::Result::ERROR_DEVICE_LOST);
+            if waited.is_ok() || waited == Err(late) || waited == Err(lost) {
+                break;
+            }
+            std::thread::sleep(PAUSE);
+            waited = wait();
+        }
+        Err(Unfinished {
+            error: match first {
+                vk::Result::TIMEOUT => Error::Vulkan {
                     call: "vkWaitForFences",
                     result: format!("TIMEOUT after {} s", patience.as_secs_f32()),
-                })
-            }
-            // After any other failure (the device is lost) nothing runs any more.
-            done => done.map_err(failed("vkWaitForFences")),
-        }
+                },
+                code => failed("vkWaitForFences")(code),
+            },
+            ended: match waited {
+                Ok(()) => true,
+                Err(vk::Result::TIMEOUT) => false,
+                Err(_) => self.becomes_idle(),
+            },
+        })
     }
+
+    /// Waits until nothing runs on the device any more; false when even that fails, and nothing is known.
+    ///
+    /// A lost device comes back from this in finite time too, and counts as idle (Vulkan spec, "Lost Device").
+    fn becomes_idle(&self) -> bool {
+        // The call is for one who has all queues of the device alone.
+        let _queue = self.queue();
+        // SAFETY: the device is live.
+        let idle = unsafe { self.raw().device_wait_idle() };
+        matches!(idle, Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST))
+    }
+}
+
+/// A submission that came to a bad end.
+struct Unfinished {
+    error: Error,
+    /// Whether nothing of it runs any more.
+    ended: bool,
 }
 
 /// A command buffer for one submission, with a pool and a fence of its own: nothing to share, so nothing to lock.
@@ -244,7 +303,8 @@ fn create(
     // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
     let subset = khr::portability_subset::NAME;
     // SAFETY: the device was listed by this live instance.
-    if unsafe { has_extension(instance.raw(), info.physical, subset) } {
+    let has_subset = unsafe { has_extension(instance.raw(), info.physical, subset) };
+    if has_subset.map_err(unavailable("vkEnumerateDeviceExtensionProperties"))? {
         extensions.push(subset);
     }
     let extensions: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
@@ -259,5 +319,5 @@ fn create(
     let create = unsafe { features.chain(create) };
     // SAFETY: the device was listed by this live instance; all that `create` points to lives through the call.
     unsafe { instance.raw().create_device(info.physical, &create, None) }
-        .map_err(failed("vkCreateDevice"))
+        .map_err(unavailable("vkCreateDevice"))
 }

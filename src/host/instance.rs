@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::failed;
+use crate::host::choice::unavailable;
 use ash::{ext, khr, vk};
 use std::borrow::Cow;
 use std::ffi::{CStr, c_char, c_void};
@@ -97,7 +98,7 @@ fn load() -> Result<ash::Entry> {
     })?;
     // SAFETY: the entry is loaded.
     let version = unsafe { entry.try_enumerate_instance_version() };
-    match version.map_err(failed("vkEnumerateInstanceVersion"))? {
+    match version.map_err(unavailable("vkEnumerateInstanceVersion"))? {
         Some(version) if version >= vk::API_VERSION_1_2 => Ok(entry),
         _ => Err(Error::NoDevice(
             "the Vulkan loader is older than 1.2; install a newer one".into(),
@@ -128,7 +129,7 @@ impl Parts {
     ) -> Result<()> {
         // SAFETY: the entry is loaded.
         let layers = unsafe { entry.enumerate_instance_layer_properties() }
-            .map_err(failed("vkEnumerateInstanceLayerProperties"))?;
+            .map_err(unavailable("vkEnumerateInstanceLayerProperties"))?;
         let is_validation =
             |layer: &vk::LayerProperties| layer.layer_name_as_c_str() == Ok(VALIDATION_LAYER);
         if !layers.iter().any(is_validation) {
@@ -163,7 +164,7 @@ fn no_validation(what: &str) -> Error {
 fn extensions(entry: &ash::Entry, layer: Option<&CStr>) -> Result<Vec<vk::ExtensionProperties>> {
     // SAFETY: the entry is loaded; the layer's name is a C string that lives through the call.
     unsafe { entry.enumerate_instance_extension_properties(layer) }
-        .map_err(failed("vkEnumerateInstanceExtensionProperties"))
+        .map_err(unavailable("vkEnumerateInstanceExtensionProperties"))
 }
 
 fn has(extensions: &[vk::ExtensionProperties], name: &CStr) -> bool {
@@ -203,7 +204,7 @@ unsafe fn create(
         vk::Result::ERROR_INCOMPATIBLE_DRIVER => Error::NoDevice(
             "no Vulkan driver is installed; install one (Debian: mesa-vulkan-drivers)".into(),
         ),
-        code => failed("vkCreateInstance")(code),
+        code => unavailable("vkCreateInstance")(code),
     })
 }
 

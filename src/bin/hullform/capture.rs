@@ -48,14 +48,11 @@ pub fn capture(
     });
     let batches = drawing.batches(cut, tags.as_ref())?;
     let mut surface = Surface::default();
-    let captured = batches.iter().try_for_each(|batch| {
+    for batch in &batches {
         let captured = capture_batch(gpu, &drawing, &target, &pipelines, cut, batch)?;
         add_patches(&mut surface, &captured, model, &drawing, cut, batch.pass);
-        Ok(())
-    });
-    // SAFETY: every submission has been waited for.
-    unsafe { pipelines.destroy(gpu.device.raw()) };
-    captured.map(|()| surface)
+    }
+    Ok(surface)
 }
 
 /// Draws a batch and returns what was captured, patch by patch.
@@ -84,13 +81,13 @@ fn capture_batch(
         )));
     }
     let surface = drawing.surface();
-    let patches = batch.first..batch.end;
-    let expected = patches.map(|patch| surface.vertices(cut, batch.pass, patch));
-    Ok(once_each(surface.captured(), expected.sum()))
+    let arrival = surface.arrival(cut, std::slice::from_ref(batch));
+    arrival.check()?;
+    Ok(once_each(surface.captured(), arrival.vertices))
 }
 
 /// The captured vertices by patch, v and u, each once: the evaluating shader may run more than once a vertex.
-fn once_each(captured: &[abi::Captured], expected: u32) -> Vec<abi::Captured> {
+fn once_each(captured: &[abi::Captured], expected: u64) -> Vec<abi::Captured> {
     let mut vertices = captured.to_vec();
     let key = |vertex: &abi::Captured| {
         (
@@ -101,7 +98,7 @@ fn once_each(captured: &[abi::Captured], expected: u32) -> Vec<abi::Captured> {
     };
     vertices.sort_unstable_by_key(key);
     vertices.dedup_by_key(|vertex| key(vertex));
-    if vertices.len() != expected as usize {
+    if vertices.len() as u64 != expected {
         tracing::warn!(
             "the device made {} vertices where {expected} were expected",
             vertices.len()

@@ -1,5 +1,6 @@
 //! A model on the device, ready to be drawn or captured.
 
+use std::ops::Deref;
 use std::time::Instant;
 
 use ash::vk;
@@ -168,13 +169,13 @@ impl<'a> Drawing<'a> {
         Ok(batches)
     }
 
-    /// The pipelines for a target.
+    /// The pipelines for a target, which go when they are dropped.
     pub fn pipelines(
         &self,
         target: &OffscreenTarget,
         spacing: Spacing,
         fill: Fill,
-    ) -> Result<Pipelines> {
+    ) -> Result<OwnPipelines<'a>> {
         let device = self.gpu.device.raw();
         let target = Target {
             render_pass: target.render_pass(),
@@ -183,7 +184,7 @@ impl<'a> Drawing<'a> {
             compare: vk::CompareOp::LESS_OR_EQUAL,
         };
         // SAFETY: all of one live device.
-        unsafe {
+        let pipelines = unsafe {
             Pipelines::new(
                 device,
                 self.layout(),
@@ -193,8 +194,12 @@ impl<'a> Drawing<'a> {
                 self.surface().options().backend,
                 spacing,
                 fill,
-            )
-        }
+            )?
+        };
+        Ok(OwnPipelines {
+            gpu: self.gpu,
+            pipelines: Some(pipelines),
+        })
     }
 
     /// A view for draws of which nothing is seen.
@@ -249,6 +254,31 @@ impl<'a> Drawing<'a> {
         match slots {
             crate::options::Slots::Counter => Slots::Counter,
             crate::options::Slots::Host => Slots::Host,
+        }
+    }
+}
+
+/// Pipelines that go when they are dropped, whatever fails in between.
+pub struct OwnPipelines<'a> {
+    gpu: &'a Gpu,
+    pipelines: Option<Pipelines>,
+}
+
+impl Deref for OwnPipelines<'_> {
+    type Target = Pipelines;
+
+    fn deref(&self) -> &Pipelines {
+        self.pipelines.as_ref().expect("there until they are dropped")
+    }
+}
+
+impl Drop for OwnPipelines<'_> {
+    fn drop(&mut self) {
+        let device = &self.gpu.device;
+        // A queue that hangs may still use them.
+        if let Some(pipelines) = self.pipelines.take().filter(|_| !device.is_hung()) {
+            // SAFETY: every submission has been waited for.
+            unsafe { pipelines.destroy(device.raw()) };
         }
     }
 }

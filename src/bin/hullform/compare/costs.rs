@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use hullform::Result;
-use hullform::gpu::{Batch, Fill, Pipelines, SurfaceOptions};
+use hullform::gpu::{Batch, Fill, SurfaceOptions};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
 
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, OwnPipelines};
 use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Global};
 use crate::render;
@@ -15,7 +15,7 @@ use crate::render;
 /// A method ready to be drawn again and again. Triangles are made and thrown away: what they cover would cost all methods the same.
 struct Ready<'a> {
     drawing: Drawing<'a>,
-    pipelines: Pipelines,
+    pipelines: OwnPipelines<'a>,
     batches: Vec<Batch>,
 }
 
@@ -30,28 +30,15 @@ pub fn seconds(
 ) -> Result<Vec<f64>> {
     // Nothing is rasterised, but draws need a render pass.
     let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
-    let mut ready = Vec::new();
-    let made = methods.iter().try_for_each(|&chosen| {
-        ready.push(prepare(gpu, model, chosen, cutting, &target, global)?);
-        Ok(())
-    });
+    let prepare = |&chosen| prepare(gpu, model, chosen, cutting, &target, global);
+    let ready = methods.iter().map(prepare).collect::<Result<Vec<_>>>()?;
     let mut least = vec![f64::INFINITY; methods.len()];
-    let drawn = made.and_then(|()| {
-        for _ in 0..frames {
-            for (ready, least) in ready.iter().zip(&mut least) {
-                *least = least.min(draw(gpu, ready, cutting, &target)?);
-            }
-        }
-        Ok(())
-    });
-    for Ready { pipelines, .. } in ready {
-        if !gpu.device.is_hung() {
-            // SAFETY: every submission has been waited for.
-            unsafe { pipelines.destroy(gpu.device.raw()) };
+    for _ in 0..frames {
+        for (ready, least) in ready.iter().zip(&mut least) {
+            *least = least.min(draw(gpu, ready, cutting, &target)?);
         }
     }
-    drawn.map(|()| least)
-}
+    Ok(least)}
 
 fn prepare<'a>(
     gpu: &'a Gpu,

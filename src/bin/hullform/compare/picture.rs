@@ -59,9 +59,11 @@ pub fn draw_map(
         target.begin(cmd, render::CLEAR);
         drawn.cmd_draw(cmd);
         target.end(cmd);
+        drawn.cmd_read_back(cmd);
         target.cmd_copy_to_host(cmd);
         Ok(())
-    })
+    })?;
+    drawn.check()
 }
 
 /// A point relative to the model's centre, as drawing has it.

@@ -1,0 +1,118 @@
+//! Whether all that was drawn has arrived: what the host predicts of each patch against what the evaluating shader did.
+
+use rustc_hash::FxHashSet;
+
+use crate::abi;
+use crate::error::{Error, Result};
+use crate::gpu::surface::TessellatedSurface;
+use crate::gpu::{Backend, Batch, Cut};
+use crate::method::Pass;
+
+/// How much of what was predicted has arrived.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arrival {
+    /// Patches that were drawn.
+    pub patches: u32,
+    /// Those of which something is missing.
+    pub incomplete: u32,
+    /// Vertices that were predicted of all patches.
+    pub vertices: u64,
+    /// Those that are missing.
+    pub missing: u64,
+}
+
+impl Arrival {
+    /// Refuses what is not whole.
+    ///
+    /// # Errors
+    /// [`Error::Lost`] when anything is missing.
+    pub fn check(self) -> Result<()> {
+        if self.missing == 0 {
+            return Ok(());
+        }
+        Err(Error::Lost {
+            what: format!(
+                "{} of {} vertices, in {} of {} patches",
+                self.missing, self.vertices, self.incomplete, self.patches
+            ),
+        })
+    }
+
+    /// Adds a patch of which so many vertices were predicted, and so many came.
+    fn add(&mut self, predicted: u32, came: u32) {
+        self.patches += 1;
+        self.vertices += u64::from(predicted);
+        self.missing += u64::from(predicted.saturating_sub(came));
+        self.incomplete += u32::from(came < predicted);
+    }
+}
+
+impl std::ops::AddAssign for Arrival {
+    fn add_assign(&mut self, other: Arrival) {
+        self.patches += other.patches;
+        self.incomplete += other.incomplete;
+        self.vertices += other.vertices;
+        self.missing += other.missing;
+    }
+}
+
+impl TessellatedSurface {
+    /// Whether all vertices have come of the batches that were drawn since [`cmd_prepare`](Self::cmd_prepare), given once for each time. By the
+    /// count of each patch, so that vertices which a device evaluates twice do not stand in for others that are missing.
+    ///
+    /// Needs [`count_vertices`](super::SurfaceOptions::count_vertices), or [`capture_vertices`](super::SurfaceOptions::capture_vertices) and
+    /// batches of a single pass, each given once. Meaningful when [`cmd_read_back`](Self::cmd_read_back) has been executed, where no patch
+    /// overflowed.
+    pub fn arrival(&self, cut: Cut, batches: &[Batch]) -> Arrival {
+        let mut arrival = Arrival::default();
+        for (pass, came) in self.came().into_iter().enumerate() {
+            let mut times = vec![0; self.prepared.passes[pass].patches.len()];
+            for batch in batches.iter().filter(|batch| batch.pass == pass) {
+                let drawn = &mut times[batch.first as usize..batch.end as usize];
+                drawn.iter_mut().for_each(|times| *times += 1);
+            }
+            let drawn = (0u32..).zip(times).filter(|&(_, times)| times > 0);
+            for (patch, times) in drawn {
+                let predicted = times * self.evaluations(cut, pass, patch);
+                arrival.add(predicted, came[patch as usize]);
+            }
+        }
+        arrival
+    }
+
+    /// How often a patch is evaluated at least, each time that it is drawn.
+    fn evaluations(&self, cut: Cut, pass: usize, patch: u32) -> u32 {
+        match self.options.backend {
+            Backend::Geometry if self.options.count_vertices => {
+                let levels = self.levels(cut, pass, patch);
+                self.options.backend.vertices(&levels, cut.spacing)
+            }
+            _ => self.vertices(cut, pass, patch),
+        }
+    }
+
+    /// By pass and patch: vertices counted, or different ones captured. What is captured does not tell its pass, and counts for each.
+    fn came(&self) -> Vec<Vec<u32>> {
+        if self.options.count_vertices {
+            let counts = self.buffers.counts().map(|counts| {
+                let records: &[abi::Captured] = bytemuck::cast_slice(&counts.bytes()[4..]);
+                records.iter().map(|record| record.patch_number).collect()
+            });
+            return counts.collect();
+        }
+        let captured = self.captured().iter();
+        let places: FxHashSet<(u32, [u32; 2])> = captured
+            .map(|vertex| (vertex.patch_number, vertex.uv.map(f32::to_bits)))
+            .collect();
+        let of_pass = |pass: &Pass| {
+            let mut came = vec![0; pass.patches.len()];
+            for (patch, _) in &places {
+                if let Some(came) = came.get_mut(*patch as usize) {
+                    *came += 1;
+                }
+            }
+            came
+        };
+        self.prepared.passes.iter().map(of_pass).collect()
+    }
+}

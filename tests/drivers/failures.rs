@@ -1,0 +1,206 @@
+//! Every call that can fail, failing in turn: no crash, no leak, the right exit code, words that name the call, and nothing half-written.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use ash::vk;
+use failing_driver::Fault;
+
+use crate::common::cli::has_device;
+use crate::trial::{Bench, Outcome, Program, is_there};
+
+/// What calls return.
+const CODES: [vk::Result; 3] = [
+    vk::Result::ERROR_OUT_OF_HOST_MEMORY,
+    vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
+    vk::Result::ERROR_DEVICE_LOST,
+];
+
+/// Calls without which there is no device: exit code 3.
+const NO_DEVICE: [&str; 7] = [
+    "vkEnumerateInstanceVersion",
+    "vkEnumerateInstanceExtensionProperties",
+    "vkEnumerateInstanceLayerProperties",
+    "vkCreateInstance",
+    "vkEnumeratePhysicalDevices",
+    "vkEnumerateDeviceExtensionProperties",
+    "vkCreateDevice",
+];
+
+/// Set to anything, every occurrence of every call fails with every code, and not a sample. Takes half an hour.
+const EVERY: &str = "HULLFORM_EVERY_FAILURE";
+
+/// Programs that take long: of these only the calls are sampled that no program before makes.
+const LONG: [&str; 2] = ["verify caches", "edges"];
+
+/// Every way that the program and the examples have to Vulkan, with little to draw.
+const PROGRAMS: [Program; 10] = [
+    program("devices", &["devices", "--device", "0"]),
+    program(
+        "render",
+        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "--method", "flat", "--wireframe", "-o", "OUT/a.png", "--stats", "OUT/a.json"],
+    ),
+    program(
+        "render by patterns",
+        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "--method", "pn", "--backend", "pattern", "--points", "device", "-o", "OUT/a.png"],
+    ),
+    program(
+        "tessellate",
+        &["tessellate", "builtin:cube", "--level", "4", "--method", "flat", "-o", "OUT/a.csv"],
+    ),
+    program(
+        "tessellate in batches",
+        &["tessellate", "builtin:cube", "--level", "4", "--ring-bytes", "4KiB", "--slots", "host", "-o", "OUT/a.ply"],
+    ),
+    program(
+        "compare",
+        &["compare", "builtin:cube", "--size", "32x24", "--level", "4", "--methods", "flat,phong", "--costs", "1", "-o", "OUT/a.png"],
+    ),
+    program(
+        "verify",
+        &["verify", "--jobs", "1", "--filter", "coordinates.isolines-equal.counts", "--csv", "OUT/a.csv"],
+    ),
+    program(
+        "verify caches",
+        &["verify", "--jobs", "1", "--filter", "determinism.cache.pole-64-equal", "--csv", "OUT/a.csv"],
+    ),
+    Program {
+        name: "headless_png",
+        example: Some("headless_png"),
+        arguments: &[],
+    },
+    Program {
+        name: "edges",
+        example: Some("edges"),
+        arguments: &["--levels", "1", "cube"],
+    },
+];
+
+const fn program(name: &'static str, arguments: &'static [&'static str]) -> Program {
+    Program {
+        name,
+        example: None,
+        arguments,
+    }
+}
+
+/// A failure to be tried.
+struct Trial {
+    program: Program,
+    call: String,
+    occurrence: u32,
+    code: vk::Result,
+}
+
+/// What a program does on a sound driver.
+struct Sound {
+    calls: BTreeMap<String, u32>,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+#[test]
+fn every_call_that_fails_is_an_error_and_no_crash() {
+    if !has_device() {
+        return;
+    }
+    let bench = Bench::new();
+    let every = std::env::var_os(EVERY).is_some();
+    let mut trials = Vec::new();
+    let mut sound = BTreeMap::new();
+    for program in PROGRAMS.into_iter().filter(|&program| is_there(program)) {
+        let outcome = bench.run(program, &Fault::Nothing);
+        assert_eq!(outcome.code(), Some(0), "{}: {}", program.name, outcome.describe());
+        assert_eq!(outcome.faults(), [""; 0], "{}", program.name);
+        assert!(!outcome.reports.is_empty(), "{}: the layer was there", program.name);
+        let mut calls = BTreeMap::new();
+        for (call, count) in outcome.reports.iter().flat_map(|report| &report.calls) {
+            let most = calls.entry(call.clone()).or_default();
+            *most = (*count).max(*most);
+        }
+        for (number, (call, &count)) in calls.iter().enumerate() {
+            let known = sound.values().any(|sound: &Sound| sound.calls.contains_key(call));
+            if every || !known || !LONG.contains(&program.name) {
+                trials.extend(sample(program, call, count, number, every));
+            }
+        }
+        let files = outcome.files;
+        sound.insert(program.name, Sound { calls, files });
+    }
+    let failures = try_all(&trials, &sound);
+    println!("{} failures of {} programs", trials.len(), sound.len());
+    for program in sound.keys() {
+        let own = trials.iter().filter(|trial| trial.program.name == *program);
+        println!("  {program}: {} of {} calls", own.count(), sound[program].calls.len());
+    }
+    assert!(failures.is_empty(), "{} of {} went wrong:\n{}", failures.len(), trials.len(), failures.join("\n"));
+}
+
+/// The first and the last occurrence with one code each, that of the first changing from call to call; or all.
+fn sample(program: Program, call: &str, count: u32, number: usize, every: bool) -> Vec<Trial> {
+    let trial = |occurrence, code| Trial {
+        program,
+        call: call.to_owned(),
+        occurrence,
+        code,
+    };
+    if every {
+        let occurrences = (1..=count).flat_map(|occurrence| CODES.map(|code| trial(occurrence, code)));
+        return occurrences.collect();
+    }
+    let mut sample = vec![trial(1, CODES[number % 3])];
+    if count > 1 {
+        sample.push(trial(count, CODES[(number + 1) % 3]));
+    }
+    sample
+}
+
+/// Tries all, two at a time, and returns what went wrong.
+fn try_all(trials: &[Trial], sound: &BTreeMap<&str, Sound>) -> Vec<String> {
+    let next = AtomicUsize::new(0);
+    let failures = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                let bench = Bench::new();
+                while let Some(trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let fault = Fault::once(&trial.call, trial.occurrence, trial.code);
+                    let outcome = bench.run(trial.program, &fault);
+                    let wrong = judge(trial, &outcome, &sound[trial.program.name]);
+                    let Trial { program, call, occurrence, code } = trial;
+                    let words = wrong.into_iter().map(|wrong| {
+                        format!("{}, {call} {occurrence}, {code:?}: {wrong}: {}", program.name, outcome.describe())
+                    });
+                    failures.lock().expect("nobody panics").extend(words);
+                }
+            });
+        }
+    });
+    failures.into_inner().expect("nobody panicked")
+}
+
+/// What is wrong about how a program took a failure.
+fn judge(trial: &Trial, outcome: &Outcome, sound: &Sound) -> Vec<&'static str> {
+    let mut wrong = Vec::new();
+    let mut hold = |holds: bool, what| {
+        if !holds {
+            wrong.push(what);
+        }
+    };
+    hold(outcome.fired(), "the call was never made");
+    hold(outcome.faults().is_empty(), "objects were left or destroyed too early");
+    hold(!outcome.words().contains("panicked"), "it panicked");
+    // The allocator asks for other memory where there is none of the best.
+    let may_recover = trial.call == "vkAllocateMemory";
+    if may_recover && outcome.code() == Some(0) {
+        hold(outcome.files == sound.files, "it did not notice");
+        return wrong;
+    }
+    let no_device = NO_DEVICE.contains(&&*trial.call) && trial.program.example.is_none();
+    hold(outcome.code() == Some(if no_device { 3 } else { 1 }), "the exit code");
+    hold(outcome.words().contains(&format!("{} failed", trial.call)), "the call is not named");
+    // What a suite found out is written whatever that is.
+    let may_write = trial.program.name.starts_with("verify") && !no_device;
+    hold(outcome.files.is_empty() || may_write, "something was written");
+    wrong
+}

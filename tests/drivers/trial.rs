@@ -1,0 +1,129 @@
+//! Programs on the failing driver.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use failing_driver::{FailingDriver, Fault, Report};
+
+use crate::common::cli::{hullform, stderr, stdout};
+
+/// A program with arguments; `OUT` in them is the scratch folder that it writes into.
+#[derive(Clone, Copy, Debug)]
+pub struct Program {
+    /// What messages of tests call it.
+    pub name: &'static str,
+    /// An example of ours instead of `hullform`.
+    pub example: Option<&'static str>,
+    pub arguments: &'static [&'static str],
+}
+
+/// A place to run programs in, with a failing driver of its own.
+pub struct Bench {
+    _folder: tempfile::TempDir,
+    driver: FailingDriver,
+    out: PathBuf,
+}
+
+/// What became of a program.
+pub struct Outcome {
+    pub output: Output,
+    pub reports: Vec<Report>,
+    /// What it wrote, by name.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+impl Bench {
+    pub fn new() -> Bench {
+        let folder = tempfile::tempdir().expect("a folder");
+        let out = folder.path().join("out");
+        std::fs::create_dir(&out).expect("a folder in it");
+        Bench {
+            driver: FailingDriver::install(folder.path()),
+            _folder: folder,
+            out,
+        }
+    }
+
+    /// Runs a program to its end, and takes away what it wrote.
+    pub fn run(&self, program: Program, fault: &Fault) -> Outcome {
+        let out = self.out.to_str().expect("a plain path");
+        let arguments = program.arguments.iter();
+        let arguments: Vec<String> = arguments.map(|word| word.replace("OUT", out)).collect();
+        let mut command = match program.example {
+            Some(name) => Command::new(example(name)),
+            None => hullform(&[]),
+        };
+        command.args(&arguments).current_dir(&self.out);
+        self.driver.apply(&mut command, fault);
+        let output = command.output().expect("the program starts");
+        Outcome {
+            output,
+            reports: self.driver.reports(),
+            files: taken(&self.out),
+        }
+    }
+}
+
+impl Outcome {
+    pub fn code(&self) -> Option<i32> {
+        self.output.status.code()
+    }
+
+    /// Whether the fault came to pass.
+    pub fn fired(&self) -> bool {
+        self.reports.iter().any(|report| report.fired)
+    }
+
+    /// What was left undestroyed or destroyed too early, in all processes.
+    pub fn faults(&self) -> Vec<String> {
+        self.reports.iter().flat_map(Report::faults).collect()
+    }
+
+    /// Everything that it said.
+    pub fn words(&self) -> String {
+        format!("{}{}", stdout(&self.output), stderr(&self.output))
+    }
+
+    /// All in one, for a test that fails.
+    pub fn describe(&self) -> String {
+        let names: Vec<_> = self.files.iter().map(|(name, _)| name).collect();
+        format!(
+            "{}, files {names:?}, faults {:?}\n{}",
+            self.output.status,
+            self.faults(),
+            self.words()
+        )
+    }
+}
+
+/// Every file in a folder, which is empty afterwards.
+fn taken(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    let mut files: Vec<_> = entries
+        .map(|entry| {
+            let path = entry.expect("an entry").path();
+            let bytes = std::fs::read(&path).expect("a file can be read");
+            std::fs::remove_file(&path).expect("and removed");
+            let name = path.file_name().expect("it has a name").to_string_lossy();
+            (name.into_owned(), bytes)
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+/// Where cargo puts examples. `cargo test` builds them, `cargo test --test drivers` does not.
+pub fn example(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("a test knows where it is");
+    let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
+    profile.join("examples").join(name)
+}
+
+/// Whether a program is there; says so if not.
+pub fn is_there(program: Program) -> bool {
+    let missing = program.example.filter(|name| !example(name).is_file());
+    if let Some(name) = missing {
+        println!("skipped: the example {name} is not built; cargo build --example {name}");
+    }
+    missing.is_none()
+}

@@ -8,6 +8,7 @@
 
 use std::error::Error;
 use std::path::Path;
+use std::process::ExitCode;
 
 use hullform::conformance::edges::{Compared, LEVELS, Setup, compare, random_mesh};
 use hullform::conformance::{Context, Settings};
@@ -21,7 +22,15 @@ struct Arguments {
     models: Vec<String>,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    let Err(error) = run() else {
+        return ExitCode::SUCCESS;
+    };
+    eprintln!("edges: {error}");
+    ExitCode::FAILURE
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
     let settings = Settings {
         seed: arguments.seed,

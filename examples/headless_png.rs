@@ -16,6 +16,7 @@ use std::cell::RefCell;
 use std::error::Error;
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
+use std::process::ExitCode;
 
 use ash::vk;
 use glam::{Mat4, Vec3};
@@ -36,7 +37,15 @@ const HEIGHT: u32 = 600;
 const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const DEPTH: vk::Format = vk::Format::D16_UNORM; // the one depth format that every device has
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    let Err(error) = run() else {
+        return ExitCode::SUCCESS;
+    };
+    eprintln!("headless_png: {error}");
+    ExitCode::FAILURE
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     // 1. The CPU's part: a control mesh, and what the quadtree method makes of it. Nothing of this needs a device, so it may run on a loader
     //    thread, or once in a tool. `Prepared` holds plain tables; the plans in it depend on the connectivity and the sharpness alone.
     let mesh = match std::env::args().nth(1) {
@@ -288,7 +297,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         // SAFETY: nobody else uses the device.
         match unsafe { device.device_wait_idle() } {
             Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST) => {}
-            Err(_) => std::process::exit(1),
+            Err(code) => {
+                eprintln!("headless_png: {}", failed("vkDeviceWaitIdle")(code));
+                std::process::exit(1)
+            }
         }
     });
     let commands = [cmd];

@@ -173,7 +173,8 @@ fn a_submission_that_never_ends_is_an_error_not_a_hang() {
         Ok(())
     });
     let words = waited.expect_err("the event is not set").to_string();
-    assert_eq!(words, "vkWaitForFences failed: TIMEOUT after 0.05 s");
+    let start = "vkWaitForFences failed: TIMEOUT after 0.05 s; ";
+    assert!(words.starts_with(start), "{words}");
     assert!(device.is_hung());
     // SAFETY: lets the queue go, so that nothing spins while the other tests run.
     unsafe { raw.set_event(event) }.expect("events can be set");

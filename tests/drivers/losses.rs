@@ -33,7 +33,7 @@ const PROGRAMS: [Program; 9] = [
     ),
     program(
         "compare",
-        &["compare", "builtin:cube", "--size", "32x24", "--level", "4", "--methods", "flat,phong", "-o", "OUT/a.png"],
+        &["compare", "builtin:cube", "--size", "32x24", "--level", "4", "--methods", "flat,phong", "--costs", "1", "-o", "OUT/a.png"],
     ),
     Program {
         name: "headless_png",

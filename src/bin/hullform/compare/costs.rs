@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use hullform::Result;
-use hullform::gpu::{Batch, Fill, SurfaceOptions};
-use hullform::host::OffscreenTarget;
+use hullform::gpu::{Backend, Batch, Fill, SurfaceOptions};
+use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
+use hullform::{Error, Result};
 
 use crate::drawing::{Drawing, OwnPipelines};
 use crate::gpu::Gpu;
@@ -17,6 +17,8 @@ struct Ready<'a> {
     drawing: Drawing<'a>,
     pipelines: OwnPipelines<'a>,
     batches: Vec<Batch>,
+    /// Tells whether frames were whole, where the device counts: counting in the shaders would cost what is to be measured.
+    query: Option<StatisticsQuery>,
 }
 
 /// The least seconds that a frame took, for each of some methods.
@@ -57,7 +59,11 @@ fn prepare<'a>(
     };
     let mut drawing = Drawing::new(gpu, model, chosen, options)?;
     drawing.upload(global.points)?;
+    let counts = gpu.device.info().support.optional.pipeline_statistics_query
+        && cutting.backend == Backend::Tessellator;
+    let query = counts.then(|| StatisticsQuery::new(&gpu.device));
     Ok(Ready {
+        query: query.transpose()?,
         batches: drawing.batches(cutting.cut, None)?,
         pipelines: drawing.pipelines(target, cutting.cut.spacing, Fill::Discard)?,
         drawing,
@@ -71,15 +77,43 @@ fn draw(gpu: &Gpu, ready: &Ready<'_>, cutting: Cutting, target: &OffscreenTarget
     gpu.device.submit(|cmd| unsafe {
         let surface = ready.drawing.surface();
         surface.cmd_prepare(gpu.device.raw(), cmd);
+        if let Some(query) = &ready.query {
+            query.cmd_reset(cmd);
+        }
         target.begin(cmd, render::CLEAR);
+        if let Some(query) = &ready.query {
+            query.cmd_begin(cmd);
+        }
         let (pipelines, batches) = (&ready.pipelines, &ready.batches);
         let view = &Drawing::nowhere();
         ready
             .drawing
             .cmd_draw(cmd, pipelines, view, cutting.cut, batches);
+        if let Some(query) = &ready.query {
+            query.cmd_end(cmd);
+        }
         target.end(cmd);
         surface.cmd_read_back(gpu.device.raw(), cmd);
         Ok(())
     })?;
-    Ok(started.elapsed().as_secs_f64())
+    let seconds = started.elapsed().as_secs_f64();
+    check(ready)?;
+    Ok(seconds)
+}
+
+/// Refuses a frame of which something is missing: it would be a fast one.
+fn check(ready: &Ready<'_>) -> Result<()> {
+    let Some(query) = &ready.query else {
+        return Ok(());
+    };
+    let [_, evaluations, _] = query.read()?;
+    let vertices = ready.batches.iter().map(|batch| u64::from(batch.vertices));
+    let predicted: u64 = vertices.sum();
+    // Patches without room in the ring are another matter.
+    if evaluations >= predicted || ready.drawing.counters().overflows > 0 {
+        return Ok(());
+    }
+    Err(Error::Lost {
+        what: format!("{} of {predicted} vertices of a frame", predicted - evaluations),
+    })
 }

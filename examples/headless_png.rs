@@ -291,9 +291,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     }
 
     // 9. Submitting and waiting are the engine's business. From here on nothing may be destroyed that the queue may still use, and a wait that
-    //    fails says nothing about the queue: so the first thing that goes, whatever happens, waits once more. A lost device counts as idle
+    //    fails says nothing about the queue: so if one does, the first thing that goes waits once more. A lost device counts as idle
     //    (Vulkan spec, "Lost Device"). Where even this wait fails nothing is known, and the program leaves without destroying anything.
-    let idle = Own::new((), |()| {
+    let busy = Own::new((), |()| {
         // SAFETY: nobody else uses the device.
         match unsafe { device.device_wait_idle() } {
             Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST) => {}
@@ -314,6 +314,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         device
             .queue_wait_idle(queue)
             .map_err(failed("vkQueueWaitIdle"))?;
+        std::mem::forget(busy);
         surface.finish_upload(&device, &mut allocator.borrow_mut());
     }
     // A control shader may run more than once for a patch. Then the slots of a batch can run out: patches that got none were left out and
@@ -332,9 +333,8 @@ fn run() -> Result<(), Box<dyn Error>> {
         driver.info
     );
 
-    // 10. Everything goes in the opposite order, when the device is idle. The library's objects borrow nothing, so each is destroyed
-    //     explicitly, by the `Own` that holds it.
-    drop(idle);
+    // 10. Everything goes in the opposite order. The library's objects borrow nothing, so each is destroyed explicitly, by the `Own` that
+    //     holds it.
     Ok(())
 }
 

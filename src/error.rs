@@ -109,7 +109,9 @@ pub enum Error {
     #[error("no suitable Vulkan device: {}", visible(.0))]
     NoDevice(String),
     /// The host or the device has no memory left for a Vulkan call.
-    #[error("{call} failed: {result}; free memory, or ask for less: a lower level, a smaller picture or mesh")]
+    #[error(
+        "{call} failed: {result}; free memory, or ask for less: a lower level, a smaller picture or mesh"
+    )]
     OutOfMemory {
         /// The call's name.
         call: &'static str,
@@ -117,7 +119,9 @@ pub enum Error {
         result: String,
     },
     /// The driver gave the device up. Nothing that was made of it can be used any more, but all of it must still be destroyed.
-    #[error("{call} failed: {result}; try again, and if it stays so choose another device or update its driver")]
+    #[error(
+        "{call} failed: {result}; try again, and if it stays so choose another device or update its driver"
+    )]
     DeviceLost {
         /// The call that told.
         call: &'static str,
@@ -158,7 +162,7 @@ impl Error {
         match self {
             Error::Input { .. } | Error::File { .. } | Error::Option { .. } => 2,
             Error::NoDevice(_) => 3,
-Error::OutOfMemory { .. }
+            Error::OutOfMemory { .. }
             | Error::DeviceLost { .. }
             | Error::Vulkan { .. }
             | Error::Lost { .. }

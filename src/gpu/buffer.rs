@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::gpu::failed;
 use ash::vk;
-use gpu_allocator::{AllocationError, MemoryLocation};
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
+use gpu_allocator::{AllocationError, MemoryLocation};
 
 /// A Vulkan buffer and the memory bound to it.
 ///

@@ -251,7 +251,8 @@ pub(crate) unsafe fn has_extension(
 ) -> std::result::Result<bool, vk::Result> {
     // SAFETY: the caller's instance and physical device.
     let all = unsafe { instance.enumerate_device_extension_properties(physical) }?;
-    let named = |extension: &vk::ExtensionProperties| extension.extension_name_as_c_str() == Ok(name);
+    let named =
+        |extension: &vk::ExtensionProperties| extension.extension_name_as_c_str() == Ok(name);
     Ok(all.iter().any(named))
 }
 

@@ -39,31 +39,109 @@ const PROGRAMS: [Program; 10] = [
     program("devices", &["devices", "--device", "0"]),
     program(
         "render",
-        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "--method", "flat", "--wireframe", "-o", "OUT/a.png", "--stats", "OUT/a.json"],
+        &[
+            "render",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--method",
+            "flat",
+            "--wireframe",
+            "-o",
+            "OUT/a.png",
+            "--stats",
+            "OUT/a.json",
+        ],
     ),
     program(
         "render by patterns",
-        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "--method", "pn", "--backend", "pattern", "--points", "device", "-o", "OUT/a.png"],
+        &[
+            "render",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--method",
+            "pn",
+            "--backend",
+            "pattern",
+            "--points",
+            "device",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     program(
         "tessellate",
-        &["tessellate", "builtin:cube", "--level", "4", "--method", "flat", "-o", "OUT/a.csv"],
+        &[
+            "tessellate",
+            "builtin:cube",
+            "--level",
+            "4",
+            "--method",
+            "flat",
+            "-o",
+            "OUT/a.csv",
+        ],
     ),
     program(
         "tessellate in batches",
-        &["tessellate", "builtin:cube", "--level", "4", "--ring-bytes", "4KiB", "--slots", "host", "-o", "OUT/a.ply"],
+        &[
+            "tessellate",
+            "builtin:cube",
+            "--level",
+            "4",
+            "--ring-bytes",
+            "4KiB",
+            "--slots",
+            "host",
+            "-o",
+            "OUT/a.ply",
+        ],
     ),
     program(
         "compare",
-        &["compare", "builtin:cube", "--size", "32x24", "--level", "4", "--methods", "flat,phong", "--costs", "1", "-o", "OUT/a.png"],
+        &[
+            "compare",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--methods",
+            "flat,phong",
+            "--costs",
+            "1",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     program(
         "verify",
-        &["verify", "--jobs", "1", "--filter", "coordinates.isolines-equal.counts", "--csv", "OUT/a.csv"],
+        &[
+            "verify",
+            "--jobs",
+            "1",
+            "--filter",
+            "coordinates.isolines-equal.counts",
+            "--csv",
+            "OUT/a.csv",
+        ],
     ),
     program(
         "verify caches",
-        &["verify", "--jobs", "1", "--filter", "determinism.cache.pole-64-equal", "--csv", "OUT/a.csv"],
+        &[
+            "verify",
+            "--jobs",
+            "1",
+            "--filter",
+            "determinism.cache.pole-64-equal",
+            "--csv",
+            "OUT/a.csv",
+        ],
     ),
     Program {
         name: "headless_png",
@@ -110,16 +188,28 @@ fn every_call_that_fails_is_an_error_and_no_crash() {
     let mut sound = BTreeMap::new();
     for program in PROGRAMS.into_iter().filter(|&program| is_there(program)) {
         let outcome = bench.run(program, &Fault::Nothing);
-        assert_eq!(outcome.code(), Some(0), "{}: {}", program.name, outcome.describe());
+        assert_eq!(
+            outcome.code(),
+            Some(0),
+            "{}: {}",
+            program.name,
+            outcome.describe()
+        );
         assert_eq!(outcome.faults(), [""; 0], "{}", program.name);
-        assert!(!outcome.reports.is_empty(), "{}: the layer was there", program.name);
+        assert!(
+            !outcome.reports.is_empty(),
+            "{}: the layer was there",
+            program.name
+        );
         let mut calls = BTreeMap::new();
         for (call, count) in outcome.reports.iter().flat_map(|report| &report.calls) {
             let most = calls.entry(call.clone()).or_default();
             *most = (*count).max(*most);
         }
         for (number, (call, &count)) in calls.iter().enumerate() {
-            let known = sound.values().any(|sound: &Sound| sound.calls.contains_key(call));
+            let known = sound
+                .values()
+                .any(|sound: &Sound| sound.calls.contains_key(call));
             if every || !known || !LONG.contains(&program.name) {
                 trials.extend(sample(program, call, count, number, every));
             }
@@ -131,9 +221,19 @@ fn every_call_that_fails_is_an_error_and_no_crash() {
     println!("{} failures of {} programs", trials.len(), sound.len());
     for program in sound.keys() {
         let own = trials.iter().filter(|trial| trial.program.name == *program);
-        println!("  {program}: {} of {} calls", own.count(), sound[program].calls.len());
+        println!(
+            "  {program}: {} of {} calls",
+            own.count(),
+            sound[program].calls.len()
+        );
     }
-    assert!(failures.is_empty(), "{} of {} went wrong:\n{}", failures.len(), trials.len(), failures.join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} of {} went wrong:\n{}",
+        failures.len(),
+        trials.len(),
+        failures.join("\n")
+    );
 }
 
 /// The first and the last occurrence with one code each, that of the first changing from call to call; or all.
@@ -145,7 +245,8 @@ fn sample(program: Program, call: &str, count: u32, number: usize, every: bool) 
         code,
     };
     if every {
-        let occurrences = (1..=count).flat_map(|occurrence| CODES.map(|code| trial(occurrence, code)));
+        let occurrences =
+            (1..=count).flat_map(|occurrence| CODES.map(|code| trial(occurrence, code)));
         return occurrences.collect();
     }
     let mut sample = vec![trial(1, CODES[number % 3])];
@@ -167,9 +268,18 @@ fn try_all(trials: &[Trial], sound: &BTreeMap<&str, Sound>) -> Vec<String> {
                     let fault = Fault::once(&trial.call, trial.occurrence, trial.code);
                     let outcome = bench.run(trial.program, &fault);
                     let wrong = judge(trial, &outcome, &sound[trial.program.name]);
-                    let Trial { program, call, occurrence, code } = trial;
+                    let Trial {
+                        program,
+                        call,
+                        occurrence,
+                        code,
+                    } = trial;
                     let words = wrong.into_iter().map(|wrong| {
-                        format!("{}, {call} {occurrence}, {code:?}: {wrong}: {}", program.name, outcome.describe())
+                        format!(
+                            "{}, {call} {occurrence}, {code:?}: {wrong}: {}",
+                            program.name,
+                            outcome.describe()
+                        )
                     });
                     failures.lock().expect("nobody panics").extend(words);
                 }
@@ -188,7 +298,10 @@ fn judge(trial: &Trial, outcome: &Outcome, sound: &Sound) -> Vec<&'static str> {
         }
     };
     hold(outcome.fired(), "the call was never made");
-    hold(outcome.faults().is_empty(), "objects were left or destroyed too early");
+    hold(
+        outcome.faults().is_empty(),
+        "objects were left or destroyed too early",
+    );
     hold(!outcome.words().contains("panicked"), "it panicked");
     // The allocator asks for other memory where there is none of the best.
     let may_recover = trial.call == "vkAllocateMemory";
@@ -197,7 +310,10 @@ fn judge(trial: &Trial, outcome: &Outcome, sound: &Sound) -> Vec<&'static str> {
         return wrong;
     }
     let no_device = NO_DEVICE.contains(&&*trial.call) && trial.program.example.is_none();
-    hold(outcome.code() == Some(if no_device { 3 } else { 1 }), "the exit code");
+    hold(
+        outcome.code() == Some(if no_device { 3 } else { 1 }),
+        "the exit code",
+    );
     // The loader makes this call too, while it creates the device.
     let by_loader = trial.call == "vkEnumerateDeviceExtensionProperties";
     let named = |call: &str| outcome.words().contains(&format!("{call} failed: "));
@@ -205,6 +321,9 @@ fn judge(trial: &Trial, outcome: &Outcome, sound: &Sound) -> Vec<&'static str> {
     hold(is_named, "the call is not named");
     // What a suite found out is written whatever that is.
     let may_write = trial.program.name.starts_with("verify") && !no_device;
-    hold(outcome.files.is_empty() || may_write, "something was written");
+    hold(
+        outcome.files.is_empty() || may_write,
+        "something was written",
+    );
     wrong
 }

@@ -6,34 +6,128 @@ use crate::common::cli::has_device;
 use crate::trial::{Bench, Program, is_there};
 
 const PROGRAMS: [Program; 9] = [
-    program("tessellate", &["tessellate", "builtin:cube", "--level", "4", "-o", "OUT/a.obj"]),
+    program(
+        "tessellate",
+        &[
+            "tessellate",
+            "builtin:cube",
+            "--level",
+            "4",
+            "-o",
+            "OUT/a.obj",
+        ],
+    ),
     program(
         "tessellate in batches",
-        &["tessellate", "builtin:ngons", "--level", "4", "--ring-bytes", "8KiB", "-o", "OUT/a.csv"],
+        &[
+            "tessellate",
+            "builtin:ngons",
+            "--level",
+            "4",
+            "--ring-bytes",
+            "8KiB",
+            "-o",
+            "OUT/a.csv",
+        ],
     ),
     program(
         "render",
-        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "-o", "OUT/a.png", "--stats", "OUT/a.json"],
+        &[
+            "render",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "-o",
+            "OUT/a.png",
+            "--stats",
+            "OUT/a.json",
+        ],
     ),
     program(
         "render in batches",
-        &["render", "builtin:ngons", "--size", "32x24", "--level", "4", "--ring-bytes", "8KiB", "-o", "OUT/a.png"],
+        &[
+            "render",
+            "builtin:ngons",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--ring-bytes",
+            "8KiB",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     program(
         "render with lines",
-        &["render", "builtin:cube", "--size", "32x24", "--level", "3", "--method", "flat", "--wireframe", "--shading", "patch", "-o", "OUT/a.png"],
+        &[
+            "render",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "3",
+            "--method",
+            "flat",
+            "--wireframe",
+            "--shading",
+            "patch",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     program(
         "render by patterns",
-        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "--method", "pn", "--backend", "pattern", "-o", "OUT/a.png"],
+        &[
+            "render",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--method",
+            "pn",
+            "--backend",
+            "pattern",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     program(
         "render by geometry shaders",
-        &["render", "builtin:cube", "--size", "32x24", "--level", "4", "--method", "pn", "--backend", "geometry", "-o", "OUT/a.png"],
+        &[
+            "render",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--method",
+            "pn",
+            "--backend",
+            "geometry",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     program(
         "compare",
-        &["compare", "builtin:cube", "--size", "32x24", "--level", "4", "--methods", "flat,phong", "--costs", "1", "-o", "OUT/a.png"],
+        &[
+            "compare",
+            "builtin:cube",
+            "--size",
+            "32x24",
+            "--level",
+            "4",
+            "--methods",
+            "flat,phong",
+            "--costs",
+            "1",
+            "-o",
+            "OUT/a.png",
+        ],
     ),
     Program {
         name: "headless_png",
@@ -58,15 +152,29 @@ fn what_was_predicted_and_did_not_arrive_is_a_failure() {
     let bench = Bench::new();
     for program in PROGRAMS.into_iter().filter(|&program| is_there(program)) {
         let sound = bench.run(program, &Fault::Nothing);
-        assert_eq!(sound.code(), Some(0), "{}: {}", program.name, sound.describe());
+        assert_eq!(
+            sound.code(),
+            Some(0),
+            "{}: {}",
+            program.name,
+            sound.describe()
+        );
         assert!(!sound.files.is_empty(), "{}", program.name);
         let draws = sound.reports[0].draws;
         assert!(draws > 0, "{}: something is drawn", program.name);
         let some = [1, draws.div_ceil(2), draws];
-        let losses = some.into_iter().flat_map(|draw| [Lost::One(draw), Lost::Half(draw)]);
+        let losses = some
+            .into_iter()
+            .flat_map(|draw| [Lost::One(draw), Lost::Half(draw)]);
         for lost in losses.chain([Lost::All]) {
             let outcome = bench.run(program, &Fault::Lose(lost));
-            let words = || format!("{}, {lost:?} of {draws}: {}", program.name, outcome.describe());
+            let words = || {
+                format!(
+                    "{}, {lost:?} of {draws}: {}",
+                    program.name,
+                    outcome.describe()
+                )
+            };
             assert!(outcome.fired(), "{}", words());
             assert_eq!(outcome.code(), Some(1), "{}", words());
             assert!(outcome.words().contains("the device lost "), "{}", words());
@@ -90,7 +198,9 @@ fn a_model_without_a_surface_is_no_loss() {
     let model: &'static str = model.to_str().expect("a plain path").to_owned().leak();
     let commands: [&'static [&'static str]; 2] = [
         ["tessellate", model, "-o", "OUT/a.csv"].to_vec().leak(),
-        ["render", model, "--size", "32x24", "-o", "OUT/a.png"].to_vec().leak(),
+        ["render", model, "--size", "32x24", "-o", "OUT/a.png"]
+            .to_vec()
+            .leak(),
     ];
     for arguments in commands {
         let program = program("hole", arguments);

@@ -10,7 +10,14 @@ const RENDER: Program = Program {
     name: "render",
     example: None,
     arguments: &[
-        "render", "builtin:hull", "--size", "64x48", "--level", "8", "-o", "OUT/a.png",
+        "render",
+        "builtin:hull",
+        "--size",
+        "64x48",
+        "--level",
+        "8",
+        "-o",
+        "OUT/a.png",
     ],
 };
 
@@ -36,7 +43,11 @@ fn where_fences_cannot_be_waited_for_the_device_is() {
     ] {
         let outcome = bench.run(RENDER, &lasting(&["vkWaitForFences"], code));
         assert_eq!(outcome.code(), Some(1), "{}", outcome.describe());
-        assert!(outcome.words().contains("vkWaitForFences failed: ERROR_OUT_OF"));
+        assert!(
+            outcome
+                .words()
+                .contains("vkWaitForFences failed: ERROR_OUT_OF")
+        );
         assert!(outcome.faults().is_empty(), "{}", outcome.describe());
         assert!(outcome.files.is_empty());
     }
@@ -65,16 +76,30 @@ fn a_device_of_which_nothing_is_known_stays() {
     if !has_device() {
         return;
     }
-    let waits = ["vkWaitForFences", "vkDeviceWaitIdle", "vkQueueWaitIdle", "vkGetFenceStatus"];
+    let waits = [
+        "vkWaitForFences",
+        "vkDeviceWaitIdle",
+        "vkQueueWaitIdle",
+        "vkGetFenceStatus",
+    ];
     let bench = Bench::new();
     let fault = lasting(&waits, vk::Result::ERROR_OUT_OF_HOST_MEMORY);
     let outcome = bench.run(RENDER, &fault);
     assert_eq!(outcome.code(), Some(1), "{}", outcome.describe());
-    assert!(outcome.words().contains("vkWaitForFences failed: ERROR_OUT_OF_HOST_MEMORY"));
+    assert!(
+        outcome
+            .words()
+            .contains("vkWaitForFences failed: ERROR_OUT_OF_HOST_MEMORY")
+    );
     assert!(outcome.files.is_empty());
     let [report] = &outcome.reports[..] else {
         panic!("one process: {}", outcome.describe());
     };
     assert!(report.wrong.is_empty(), "{}", outcome.describe());
-    assert_eq!(report.left.get("Device"), Some(&1), "{}", outcome.describe());
+    assert_eq!(
+        report.left.get("Device"),
+        Some(&1),
+        "{}",
+        outcome.describe()
+    );
 }

@@ -268,7 +268,9 @@ impl Deref for OwnPipelines<'_> {
     type Target = Pipelines;
 
     fn deref(&self) -> &Pipelines {
-        self.pipelines.as_ref().expect("there until they are dropped")
+        self.pipelines
+            .as_ref()
+            .expect("there until they are dropped")
     }
 }
 

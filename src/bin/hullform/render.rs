@@ -256,7 +256,9 @@ fn draw_with(
         let drawn = batches.repeat(pipelines.len());
         drawing.surface().arrival(cut, &drawn).check()?;
     }
-    Ok(statistics(gpu, scene, &drawing, &batches, &counted, seconds))
+    Ok(statistics(
+        gpu, scene, &drawing, &batches, &counted, seconds,
+    ))
 }
 
 /// Draws one frame: the surface, and with a second set of pipelines its lines. Returns the pipeline statistics of the surface.

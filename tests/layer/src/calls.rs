@@ -174,11 +174,18 @@ passed_on! {
 unsafe fn pipelines_made(made: *mut vk::Pipeline, count: u32) {
     // SAFETY: this function's contract.
     let made = unsafe { std::slice::from_raw_parts(made, count as usize) };
-    state::with(|state| made.iter().for_each(|pipeline| state.made("Pipeline", pipeline.as_raw())));
+    state::with(|state| {
+        made.iter()
+            .for_each(|pipeline| state.made("Pipeline", pipeline.as_raw()))
+    });
 }
 
 #[allow(non_snake_case)]
-unsafe extern "system" fn vkDestroyPipeline(device: vk::Device, pipeline: vk::Pipeline, callbacks: Callbacks<'_>) {
+unsafe extern "system" fn vkDestroyPipeline(
+    device: vk::Device,
+    pipeline: vk::Pipeline,
+    callbacks: Callbacks<'_>,
+) {
     state::with(|state| state.destroyed("Pipeline", pipeline.as_raw()));
     // SAFETY: the arguments are the application's, here and below.
     unsafe {
@@ -198,7 +205,13 @@ fn left(vertices: u32, instances: u32) -> (u32, u32) {
 }
 
 #[allow(non_snake_case)]
-unsafe extern "system" fn vkCmdDraw(cmd: vk::CommandBuffer, vertices: u32, instances: u32, vertex: u32, instance: u32) {
+unsafe extern "system" fn vkCmdDraw(
+    cmd: vk::CommandBuffer,
+    vertices: u32,
+    instances: u32,
+    vertex: u32,
+    instance: u32,
+) {
     let (vertices, instances) = left(vertices, instances);
     // SAFETY: as above; a draw of nothing is allowed.
     unsafe {
@@ -225,7 +238,13 @@ unsafe extern "system" fn vkCmdDrawIndexed(
 }
 
 #[allow(non_snake_case)]
-unsafe extern "system" fn vkCmdDrawIndirect(cmd: vk::CommandBuffer, buffer: vk::Buffer, offset: u64, draws: u32, stride: u32) {
+unsafe extern "system" fn vkCmdDrawIndirect(
+    cmd: vk::CommandBuffer,
+    buffer: vk::Buffer,
+    offset: u64,
+    draws: u32,
+    stride: u32,
+) {
     let (draws, _) = left(draws, 1);
     // SAFETY: as above.
     unsafe {
@@ -245,7 +264,8 @@ unsafe extern "system" fn vkCmdDrawIndexedIndirect(
     let (draws, _) = left(draws, 1);
     // SAFETY: as above.
     unsafe {
-        let next: vk::PFN_vkCmdDrawIndexedIndirect = below(cmd.as_raw(), c"vkCmdDrawIndexedIndirect");
+        let next: vk::PFN_vkCmdDrawIndexedIndirect =
+            below(cmd.as_raw(), c"vkCmdDrawIndexedIndirect");
         next(cmd, buffer, offset, draws, stride);
     }
 }

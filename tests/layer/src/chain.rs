@@ -86,7 +86,10 @@ pub unsafe fn below<F: Copy>(handle: u64, name: &CStr) -> F {
         // SAFETY: the object and its function are those that the loader gave.
         unsafe { below.find(name) }
     });
-    assert!(found.is_some(), "{name:?} is asked for below only where it was above");
+    assert!(
+        found.is_some(),
+        "{name:?} is asked for below only where it was above"
+    );
     // SAFETY: `F` is the function's own type.
     unsafe { std::mem::transmute_copy(&found) }
 }
@@ -211,7 +214,10 @@ pub unsafe extern "system" fn create_instance(
     }
     // SAFETY: the loader's info, and its functions.
     unsafe {
-        let link = link((*info).p_next, vk::StructureType::LOADER_INSTANCE_CREATE_INFO);
+        let link = link(
+            (*info).p_next,
+            vk::StructureType::LOADER_INSTANCE_CREATE_INFO,
+        );
         let get = link.get_instance_proc_addr;
         let create = get(vk::Instance::null(), c"vkCreateInstance".as_ptr());
         let create = create.expect("somebody creates instances");

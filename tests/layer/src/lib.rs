@@ -58,7 +58,8 @@ impl FailingDriver {
             std::fs::create_dir_all(folder).expect("a scratch folder can be written to");
         }
         let manifest = manifests.join("failing_driver.json");
-        std::fs::write(manifest, self::manifest(&library())).expect("a scratch folder can be written to");
+        std::fs::write(manifest, self::manifest(&library()))
+            .expect("a scratch folder can be written to");
         FailingDriver { data, reports }
     }
 

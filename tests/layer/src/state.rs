@@ -126,7 +126,8 @@ impl State {
             return;
         }
         if !self.live.remove(&(kind, handle)) {
-            self.wrong.push(format!("a {kind} was destroyed that is none"));
+            self.wrong
+                .push(format!("a {kind} was destroyed that is none"));
         }
         if self.pending {
             let wrong = format!("a {kind} was destroyed while a submission may use it");
@@ -144,7 +145,8 @@ impl State {
 
     /// A function is called that the layer does not know.
     pub fn unknown(&mut self, name: &str) {
-        self.wrong.push(format!("{name} is called, which the layer does not know"));
+        self.wrong
+            .push(format!("{name} is called, which the layer does not know"));
         self.write();
     }
 
@@ -157,7 +159,10 @@ impl State {
         for (kind, _) in &self.live {
             *left.entry(kind.to_string()).or_default() += 1;
         }
-        let calls = self.calls.iter().map(|(name, &count)| (name.to_string(), count));
+        let calls = self
+            .calls
+            .iter()
+            .map(|(name, &count)| (name.to_string(), count));
         let report = Report {
             fired: self.fired,
             calls: calls.collect(),

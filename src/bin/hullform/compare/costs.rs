@@ -40,7 +40,8 @@ pub fn seconds(
             *least = least.min(draw(gpu, ready, cutting, &target)?);
         }
     }
-    Ok(least)}
+    Ok(least)
+}
 
 fn prepare<'a>(
     gpu: &'a Gpu,
@@ -114,6 +115,9 @@ fn check(ready: &Ready<'_>) -> Result<()> {
         return Ok(());
     }
     Err(Error::Lost {
-        what: format!("{} of {predicted} vertices of a frame", predicted - evaluations),
+        what: format!(
+            "{} of {predicted} vertices of a frame",
+            predicted - evaluations
+        ),
     })
 }

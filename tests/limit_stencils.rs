@@ -73,6 +73,7 @@ fn cases(n: u32) -> Vec<Case> {
     ];
     if n > 1 {
         let closed = [Sheet::Closed(n)];
+        let sheet = [sector[0], crease[0], Sheet::From(1, 2, 3)];
         let cone = [closed[0], crease[0], crease[1], crease[1]];
         let page = [Sheet::From(1, 1, n), crease[0], Sheet::From(2, 2, 3)];
         cases.extend([
@@ -81,6 +82,12 @@ fn cases(n: u32) -> Vec<Case> {
             case(format!("sharp vertex of {n} faces"), &closed, &[], true),
             case(format!("sharp dart {n}"), &closed, &[0], true),
             case(format!("crease through {n}"), &closed, &[0, n / 2], false),
+            case(
+                format!("crease of {n} faces and two more sheets"),
+                &sheet,
+                &[],
+                false,
+            ),
             case(
                 format!("cone of {n} on a non-manifold crease"),
                 &cone,

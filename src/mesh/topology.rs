@@ -5,13 +5,15 @@
 //! become infinitely sharp, and so do non-manifold vertices other than those on a plain non-manifold crease.
 
 mod connect;
+#[cfg(test)]
+mod tests;
 
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::mesh::control_mesh::ordered;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
-use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, SchemeOptions};
+use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
 pub use connect::Lists;
 
@@ -65,6 +67,15 @@ pub struct Topology {
 impl Topology {
     /// The topology of a whole control mesh, with boundary rules and non-manifold places turned into sharpness.
     pub fn new(mesh: &ControlMesh) -> Topology {
+        Topology::under(mesh, mesh.options().scheme)
+    }
+
+    /// The same under a scheme that may not be the mesh's own.
+    pub(crate) fn under(mesh: &ControlMesh, scheme: Scheme) -> Topology {
+        let options = SchemeOptions {
+            scheme,
+            ..mesh.options()
+        };
         let mut edge_sharpness = FxHashMap::default();
         for crease in mesh.creases() {
             edge_sharpness.insert(ordered(crease.vertices), clamp(crease.sharpness));
@@ -73,36 +84,57 @@ impl Topology {
         for corner in mesh.corners() {
             vertex_sharpness[corner.vertex as usize] = clamp(corner.sharpness);
         }
-        let mut topology =
-            Topology::connect(mesh.faces(), vertex_sharpness, mesh.options(), |a, b| {
-                let sharpness = edge_sharpness.get(&ordered([a, b])).copied().unwrap_or(0.0);
-                (sharpness, [0.0; 2])
-            });
+        let mut topology = Topology::connect(mesh.faces(), vertex_sharpness, options, |a, b| {
+            let sharpness = edge_sharpness.get(&ordered([a, b])).copied().unwrap_or(0.0);
+            (sharpness, [0.0; 2])
+        });
         for &hole in mesh.holes() {
             topology.holes[hole as usize] = true;
         }
-        topology.sharpen();
+        let open = topology.has_open_boundaries();
+        if open {
+            topology.open_boundary_faces();
+        }
+        topology.sharpen_non_manifold();
+        // What holes leave of boundaries is not sharpened in OpenSubdiv: Chaikin's rule takes in what tags say of them.
+        if !open {
+            topology.sharpen_boundaries();
+        }
         topology.foresee();
+        topology.sharpen_boundaries();
         topology
     }
 
-    /// Boundary and non-manifold rules, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
-    fn sharpen(&mut self) {
-        if self.options.boundary == BoundaryInterpolation::None {
-            self.open_boundary_faces();
-        }
+    /// Whether faces at a boundary have no limit. A scheme without rules for neighbours has one everywhere (OpenSubdiv's
+    /// `GetLocalNeighborhoodSize`).
+    fn has_open_boundaries(&self) -> bool {
+        self.options.boundary == BoundaryInterpolation::None
+            && self.options.scheme != Scheme::Bilinear
+    }
+
+    /// Sharp corners and non-manifold places, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
+    fn sharpen_non_manifold(&mut self) {
         let manifold: Vec<bool> = (0..self.edges.len() as u32)
             .map(|edge| self.is_manifold_edge(edge))
             .collect();
-        for (number, manifold) in manifold.iter().enumerate() {
-            if self.edge_faces.get(number as u32).len() < 2 || !manifold {
-                self.edges[number].sharpness = INFINITE_SHARPNESS;
-            }
+        for (edge, _) in self.edges.iter_mut().zip(&manifold).filter(|pair| !pair.1) {
+            edge.sharpness = INFINITE_SHARPNESS;
         }
         for vertex in 0..self.vertex_count() as u32 {
             if self.is_interpolated_corner(vertex) || self.is_non_manifold_corner(vertex, &manifold)
             {
                 self.vertex_sharpness[vertex as usize] = INFINITE_SHARPNESS;
+            }
+        }
+    }
+
+    /// Boundary edges are infinitely sharp, now and for ever.
+    fn sharpen_boundaries(&mut self) {
+        for number in 0..self.edges.len() {
+            if self.edge_faces.get(number as u32).len() < 2 {
+                let edge = &mut self.edges[number];
+                edge.sharpness = INFINITE_SHARPNESS;
+                edge.next = [INFINITE_SHARPNESS; 2];
             }
         }
     }
@@ -143,21 +175,40 @@ impl Topology {
             && self.vertex_edges.get(vertex).len() == 2
     }
 
-    /// A non-manifold vertex is a corner, unless it merely lies on a crease of two non-manifold edges inside the mesh.
+    /// A non-manifold vertex is a corner, unless it merely lies on a crease inside the mesh: two edges of more than two faces, between which
+    /// each fan of faces around the vertex spans. (OpenSubdiv 3.5 only counted faces and edges; pull request 1338 mended it.)
     fn is_non_manifold_corner(&self, vertex: u32, manifold: &[bool]) -> bool {
         let (edges, faces) = (self.vertex_edges.get(vertex), self.vertex_faces.get(vertex));
-        let non_manifold = edges
-            .iter()
-            .filter(|&&edge| !manifold[edge as usize])
-            .count();
-        if non_manifold == 0 {
-            return !faces.is_empty() && !self.is_single_fan(vertex);
+        let is_boundary = |&edge: &u32| self.edge_faces.get(edge).len() < 2;
+        let non_manifold = edges.iter().copied().filter(|&e| !manifold[e as usize]);
+        match non_manifold.collect::<SmallVec<[u32; 4]>>()[..] {
+            [] => !faces.is_empty() && !self.is_single_fan(vertex),
+            [from, to] if faces.len() > edges.len() && !edges.iter().any(is_boundary) => {
+                !self.fans_span(vertex, from, to)
+            }
+            _ => true,
         }
-        let boundaries = edges
-            .iter()
-            .filter(|&&edge| self.edge_faces.get(edge).len() < 2)
-            .count();
-        !(non_manifold == 2 && boundaries == 0 && faces.len() > edges.len())
+    }
+
+    /// Whether all fans of faces around `vertex` lead from edge `from` to edge `to`, the only edges there that are non-manifold or boundaries.
+    fn fans_span(&self, vertex: u32, from: u32, to: u32) -> bool {
+        let mut met = 0;
+        for &first in self.edge_faces.get(from) {
+            let [a, b] = self.edges_at(first, vertex);
+            let mut at = (first, if a == from { b } else { a });
+            met += 1;
+            while at.1 != from && at.1 != to {
+                let Some(next) = self.step(vertex, at.0, at.1) else {
+                    return false;
+                };
+                at = next;
+                met += 1;
+            }
+            if at.1 == from {
+                return false;
+            }
+        }
+        met == self.vertex_faces.get(vertex).len()
     }
 
     /// Whether the faces around `vertex` hang together across its edges.

@@ -49,7 +49,7 @@ fn neighbours(topology: &Topology, face: u32, corner: u32) -> Option<[Mask; 6]> 
     let opposite = |edge: usize| Mask::from_slice(&[(vertex, 2.0), (end(edge), -1.0)]);
     let mut around = match (rule(sharpness, sharp), fan.faces.len()) {
         (Rule::Smooth, 6) if fan.closed => std::array::from_fn(single),
-        (Rule::Crease, 3) if !fan.closed && fan.edges[0] != fan.edges[3] => [
+        (Rule::Crease, 3) if !fan.closed => [
             single(0),
             single(1),
             single(2),

@@ -6,7 +6,6 @@
 
 mod corner;
 mod dart;
-mod page;
 
 use std::f64::consts::PI;
 
@@ -86,7 +85,6 @@ pub(super) fn family_stencil(
     let own = match rule {
         Rule::Smooth if ring.fan.edges.len() == 2 => ring.valence_two(),
         Rule::Smooth => ring.smooth(),
-        Rule::Crease if ring.is_page() => ring.page(),
         Rule::Crease => ring.crease(),
         Rule::Corner => ring.corner(),
         Rule::Dart => ring.dart(),
@@ -112,15 +110,10 @@ pub enum TangentPlane {
 pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlane {
     let vertex = topology.face(face)[corner as usize];
     let sharp = topology.sharp_edges(vertex).count();
-    let ring = Ring {
-        topology,
-        fan: topology.fan(face, corner),
-        family: Family::Quads,
-    };
     match rule(topology.vertex_sharpness(vertex), sharp) {
         Rule::Smooth | Rule::Dart => TangentPlane::Vertex,
-        Rule::Crease if !ring.is_page() => TangentPlane::Sector(ring.fan.faces[0]),
-        Rule::Crease | Rule::Corner => TangentPlane::Face(face),
+        Rule::Crease => TangentPlane::Sector(topology.fan(face, corner).faces[0]),
+        Rule::Corner => TangentPlane::Face(face),
     }
 }
 
@@ -230,12 +223,12 @@ impl Ring<'_> {
     /// Whether a mask is known. Of triangles there is none where they close around an interior vertex of valence 2, and where few of
     /// them begin and end at one and the same sharp edge: too many modes contract alike there.
     fn has_mask(&self, rule: Rule) -> bool {
-        let (n, alike) = (self.faces(), self.is_page());
+        let n = self.faces();
+        let closed = self.fan.closed;
         match (self.family, rule) {
-            (Family::Quads, _) => true,
+            (Family::Quads, _) | (_, Rule::Crease) => true,
             (_, Rule::Smooth | Rule::Dart) => n > 2,
-            (_, Rule::Crease) => !alike || self.fan.closed && n > 2 || n > 6,
-            (_, Rule::Corner) => !alike || self.fan.closed || n > 6,
+            (_, Rule::Corner) => closed || self.fan.edges[0] != self.fan.edges[n] || n > 6,
         }
     }
 

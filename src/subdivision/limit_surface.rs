@@ -69,7 +69,8 @@ impl LimitSurface {
 
     /// The limit of a mesh under a scheme that may not be its own.
     pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
-        LimitSurface::of_topology(Topology::new(mesh), mesh.positions().to_vec(), scheme)
+        let topology = Topology::under(mesh, scheme);
+        LimitSurface::of_topology(topology, mesh.positions().to_vec(), scheme)
     }
 
     /// The limit of a topology, such as one that was refined, with a position for each of its vertices.

@@ -82,7 +82,7 @@ pub(super) type Smooth = fn(&Topology, u32, f64, &mut Mask);
 pub(super) fn edge_point_with(topology: &Topology, edge: u32, smooth: Smooth) -> Mask {
     let mut mask = Mask::new();
     let crease = crease_share(topology, edge);
-    if crease > 0.0 {
+    if crease != 0.0 {
         mask.extend(
             topology
                 .edge(edge)
@@ -90,20 +90,22 @@ pub(super) fn edge_point_with(topology: &Topology, edge: u32, smooth: Smooth) ->
                 .map(|vertex| (vertex, 0.5 * crease)),
         );
     }
-    if crease < 1.0 {
+    if crease != 1.0 {
         smooth(topology, edge, 1.0 - crease, &mut mask);
     }
     mask
 }
 
-/// How much of an edge point follows the crease rule: all of it from sharpness 1 on, below that the sharpness itself.
-/// Chaikin's rule can leave both halves of an edge below 1 sharp; then it is a crease still.
+/// How much of an edge point follows the crease rule: all of it while both halves stay sharp, else the sharpness itself.
+///
+/// Under Chaikin's rule a sharpness above 1 may leave a half smooth, beside an edge that is nearly so. Then the share is more than 1, and the smooth
+/// rule has a negative one: `Sdc::Scheme::ComputeEdgeVertexMask` does not clamp it, where the transition of a vertex is clamped.
 fn crease_share(topology: &Topology, edge: u32) -> f64 {
     let edge = topology.edge(edge);
-    if edge.sharpness >= 1.0 || (is_sharp(edge.next[0]) && is_sharp(edge.next[1])) {
+    if edge.next.into_iter().all(is_sharp) {
         1.0
     } else {
-        f64::from(edge.sharpness.max(0.0))
+        f64::from(edge.sharpness)
     }
 }
 
@@ -227,5 +229,157 @@ pub(super) fn add_smooth_vertex(topology: &Topology, vertex: u32, scale: f64, ma
     );
     for corner in topology.vertex_faces(vertex) {
         add_face(topology, corner.face, scale / (n * n), mask);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{
+        BoundaryInterpolation, ControlMesh, CreaseMethod, INFINITE_SHARPNESS, Scheme, SchemeOptions,
+    };
+
+    const WIDTH: u32 = 5;
+
+    /// Quads between five columns and three rows of vertices; the height of each vertex is that of its row, but for the middle of the grid.
+    fn grid(
+        heights: [f64; 3],
+        middle: f64,
+        creases: &[([u32; 2], f32)],
+        boundary: BoundaryInterpolation,
+    ) -> (Topology, Vec<DVec3>) {
+        let rows = (0..3 * WIDTH).map(|i| {
+            let height = if i == 7 {
+                middle
+            } else {
+                heights[i as usize / 5]
+            };
+            [f64::from(i % WIDTH), f64::from(i / WIDTH), height]
+        });
+        let positions: Vec<[f64; 3]> = rows.collect();
+        let corners = (0..2 * WIDTH).filter(|i| i % WIDTH < WIDTH - 1);
+        let faces: Vec<u32> = corners
+            .flat_map(|i| [i, i + 1, i + WIDTH + 1, i + WIDTH])
+            .collect();
+        let mut builder =
+            ControlMesh::builder(&positions, &[4; 8], &faces).options(SchemeOptions {
+                creasing: CreaseMethod::Chaikin,
+                boundary,
+                ..SchemeOptions::default()
+            });
+        for &([a, b], sharpness) in creases {
+            builder = builder.crease(a, b, sharpness);
+        }
+        let mesh = builder.build().expect("a sound grid");
+        (Topology::new(&mesh), mesh.positions().to_vec())
+    }
+
+    fn edge_between(topology: &Topology, a: u32, b: u32) -> u32 {
+        let edges = topology.vertex_edges(a).iter().copied();
+        let mut found = edges.filter(|&edge| topology.edge(edge).other(a) == b);
+        found.next().expect("an edge")
+    }
+
+    fn near(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+    }
+
+    /// Along a ridge of height 1 between valleys of 0 the smooth rule gives 3/4 and the crease rule 1; so 3/4 + share / 4.
+    #[test]
+    fn edge_points_of_chaikin_creases_are_opensubdivs() {
+        const INF: f32 = INFINITE_SHARPNESS;
+        // Sharpness of the ridge's four edges and of an edge across at the end of the second; the second edge's share.
+        let cases: [([f32; 5], f64); 7] = [
+            // Both halves decay to 3/4 1.3 + 1/4 0.01 - 1 < 0.
+            ([0.01, 1.3, 0.01, 0.01, 0.0], 1.3),
+            // One half does: at the other end nothing else is sharp, and 0.3 is left.
+            ([0.0, 1.3, 0.01, 0.0, 0.0], 1.3),
+            // Three creases: 3/4 1.2 + 1/4 (0.1 + 0.2) / 2 - 1 < 0.
+            ([0.0, 1.2, 0.1, 0.0, 0.2], 1.2),
+            // Both halves stay sharp though the edge is below 1: 3/4 0.9 + 1/4 3 - 1 = 0.425.
+            ([3.0, 0.9, 3.0, 0.0, 0.0], 1.0),
+            ([3.0, 0.9, 0.1, 0.0, 0.0], 0.9),
+            // Infinite creases do not share.
+            ([INF, 1.2, INF, 0.0, 0.0], 1.0),
+            ([INF, 0.6, 3.0, 0.0, 0.0], 0.6),
+        ];
+        for (sharpness, share) in cases {
+            let along = (0..4).map(|i| ([5 + i, 6 + i], sharpness[i as usize]));
+            let creases: Vec<_> = along.chain([([7, 12], sharpness[4])]).collect();
+            let heights = [0.0, 1.0, 0.0];
+            let (topology, positions) =
+                grid(heights, 1.0, &creases, BoundaryInterpolation::EdgeOnly);
+            let edge = edge_between(&topology, 6, 7);
+            let point = DVec3::blend(&edge_point(&topology, edge), &positions);
+            near(point.z, 0.75 + 0.25 * share);
+            near(point.x, 1.5);
+            // Loop's own rules differ, what makes a crease does not.
+            let smooth: Smooth = |_, _, scale, mask| mask.push((0, scale));
+            let mask = edge_point_with(&topology, edge, smooth);
+            near(
+                mask.iter()
+                    .filter(|term| term.0 == 0)
+                    .map(|term| term.1)
+                    .sum(),
+                1.0 - share,
+            );
+        }
+    }
+
+    #[test]
+    fn vertex_points_of_chaikin_creases_are_opensubdivs() {
+        let ridge = |creases: &[([u32; 2], f32)]| {
+            let (topology, positions) = grid(
+                [0.0, 1.0, 0.0],
+                3.0,
+                creases,
+                BoundaryInterpolation::EdgeOnly,
+            );
+            DVec3::blend(&vertex_point(&topology, 7), &positions).z
+        };
+        // 2/4 3 + (1 + 1) / 16 + 4 / 16, for the mean of each face is 1.
+        const SMOOTH: f64 = 1.875;
+        const CREASE: f64 = 0.75 * 3.0 + 0.25;
+        near(ridge(&[]), SMOOTH);
+        near(ridge(&[([6, 7], 2.0), ([7, 8], 2.0)]), CREASE);
+        // Both fade: the mean of 0.01 and 1.3.
+        let share = 0.655;
+        let expected = share * CREASE + (1.0 - share) * SMOOTH;
+        near(ridge(&[([6, 7], 0.01), ([7, 8], 1.3)]), expected);
+        // One fades, and a dart is left, which is smooth: 3/4 2.4 + 1/4 0.01 - 1 = 0.8025.
+        let expected = 0.01 * CREASE + 0.99 * SMOOTH;
+        near(ridge(&[([6, 7], 0.01), ([7, 8], 2.4)]), expected);
+        // A corner of three, of which one fades: 3/4 0.25 + 1/4 2 - 1 < 0, but 3/4 2 + 1/4 1.125 - 1 = 0.78125.
+        let expected = 0.25 * 3.0 + 0.75 * CREASE;
+        near(
+            ridge(&[([6, 7], 2.0), ([7, 8], 2.0), ([7, 12], 0.25)]),
+            expected,
+        );
+    }
+
+    /// OpenSubdiv leaves the boundary as the tags have it where faces beside it are holes, and Chaikin's rule counts what is semi-sharp.
+    #[test]
+    fn boundaries_without_interpolation_take_part_in_chaikins_rule() {
+        let creases = [([2, 7], 0.9), ([7, 8], 3.0), ([1, 2], 3.0)];
+        for (boundary, share) in [
+            (BoundaryInterpolation::None, 1.0),
+            (BoundaryInterpolation::EdgeOnly, 0.9),
+        ] {
+            let (topology, positions) = grid([0.0, 1.0, 0.0], 1.0, &creases, boundary);
+            let edge = edge_between(&topology, 2, 7);
+            let point = DVec3::blend(&edge_point(&topology, edge), &positions);
+            // Both rules give this height. The smooth one takes a sixteenth of what lies beside.
+            near(point.z, 0.5);
+            let mask = edge_point(&topology, edge);
+            let beside = mask.iter().filter(|term| term.0 == 6).map(|term| term.1);
+            near(beside.sum(), (1.0 - share) / 16.0);
+        }
+        let (topology, _) = grid([0.0; 3], 0.0, &[], BoundaryInterpolation::None);
+        let edge = topology.edge(edge_between(&topology, 0, 1));
+        assert_eq!(
+            (edge.sharpness, edge.next),
+            (INFINITE_SHARPNESS, [INFINITE_SHARPNESS; 2])
+        );
+        assert_eq!(topology.options().scheme, Scheme::CatmullClark);
     }
 }

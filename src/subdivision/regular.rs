@@ -137,8 +137,6 @@ pub(super) fn corner_points(topology: &Topology, face: u32, corner: u32) -> Opti
             let follows_next = (fan.at + 4 - crease.0).is_multiple_of(2);
             Some(interior(&end, &far, fan.at, Some((follows_next, crease.1))))
         }
-        // A page at a non-manifold vertex; see `limit`.
-        (Rule::Crease, 2) if fan.closed || fan.edges.first() == fan.edges.last() => None,
         (Rule::Crease, 2) if !semi_sharp && fan.at == 0 => Some(CornerPoints {
             along: ControlPoint::Vertex(end(2)),
             beside: ControlPoint::Mirrored([own, previous]),

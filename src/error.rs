@@ -25,6 +25,8 @@ pub enum Place {
     Edge(usize, usize),
     /// The mesh as a whole.
     Mesh,
+    /// A face, vertex or edge of the mesh in a file.
+    In(String, Box<Place>),
 }
 
 impl fmt::Display for Place {
@@ -36,6 +38,7 @@ impl fmt::Display for Place {
             Place::Vertex(vertex) => write!(f, "vertex {vertex}"),
             Place::Edge(a, b) => write!(f, "edge {a}-{b}"),
             Place::Mesh => write!(f, "mesh"),
+            Place::In(file, place) => write!(f, "{file}: {place}"),
         }
     }
 }
@@ -157,6 +160,31 @@ impl Error {
         }
     }
 
+    /// The same of a mesh that came from a file: what is wrong with a face, vertex or edge, or with all of it, names the file. Other errors, and places
+    /// that name a file, stay as they are.
+    pub fn in_file(self, file: &str) -> Error {
+        let Error::Input {
+            place,
+            problem,
+            remedy,
+        } = self
+        else {
+            return self;
+        };
+        let place = match place {
+            Place::Mesh => Place::File(file.to_string()),
+            Place::Face(_) | Place::Vertex(_) | Place::Edge(..) => {
+                Place::In(file.to_string(), Box::new(place))
+            }
+            named => named,
+        };
+        Error::Input {
+            place,
+            problem,
+            remedy,
+        }
+    }
+
     /// The exit code of the command line: 1 failed, 2 bad input or usage, 3 no suitable device.
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -204,5 +232,22 @@ mod tests {
         );
         plain(Error::NoDevice(name.into()).to_string());
         assert_eq!(visible("Größe – 大"), "Größe – 大");
+    }
+
+    #[test]
+    fn errors_of_meshes_name_their_file_once() {
+        let of = |place| {
+            let error = Error::input(place, "it is odd", "mend it");
+            error.in_file("a.obj").in_file("b.obj").to_string()
+        };
+        assert_eq!(of(Place::Mesh), "a.obj: it is odd; mend it");
+        assert_eq!(of(Place::Face(3)), "a.obj: face 3: it is odd; mend it");
+        assert_eq!(of(Place::Edge(1, 2)), "a.obj: edge 1-2: it is odd; mend it");
+        assert_eq!(
+            of(Place::Line("c.obj".into(), 4)),
+            "c.obj:4: it is odd; mend it"
+        );
+        let other = Error::Refused("no".into()).in_file("a.obj");
+        assert_eq!(other.to_string(), "no");
     }
 }

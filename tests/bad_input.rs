@@ -52,8 +52,15 @@ fn coordinates() {
     refused("v\n", 1, "has 0 coordinates");
     refused("v 0 0 zero\n", 1, "\"zero\" is not a number");
     refused("v 0 0 0 1 2 blue\n", 1, "\"blue\" is not a number");
-    refused("vt 0\n", 1, "has 1 values");
-    refused("vt 0 inf\n", 1, "\"inf\" is not finite");
+    refused("vt\n", 1, "has no value");
+    refused("vt 0 1e999\n", 1, "\"1e999\" is not finite");
+    refused("vt 0 0,5\n", 1, "\"0,5\" is not a number");
+    refused("vt nancy 0\n", 1, "\"nancy\" is not a number");
+    // As Windows once wrote them; not a comment behind a number.
+    refused("v 0 -1.#IND 0\n", 1, "\"-1.#IND\" is not finite");
+    refused("v -nan(ind) 0 0\n", 1, "\"-nan(ind)\" is not finite");
+    refused("v 0x10 0 0\n", 1, "\"0x10\" is not a number");
+    refused("v 0 infinity 0\n", 1, "\"infinity\" is not finite");
 }
 
 #[test]
@@ -136,9 +143,142 @@ fn whole_files() {
         message.starts_with("bad.obj:2: byte 0xff is not UTF-8"),
         "{message}"
     );
+    let message = refusal(b"\xff\xfev\0 \x000\0");
+    assert!(
+        message.starts_with("bad.obj: this is UTF-16 text; "),
+        "{message}"
+    );
+    for bytes in [
+        &b"\x1f\x8b\x08\x00\xff\x0a\x00"[..],
+        b"v\0 \x000\0 \x000\0 \x000\0\n\0",
+    ] {
+        let message = refusal(bytes);
+        assert!(message.contains("there are bytes of 0x00"), "{message}");
+    }
     let error = read_obj(Path::new("no/such.obj")).expect_err("there is no such file");
     assert!(matches!(&error, Error::File { .. }));
     assert!(error.to_string().starts_with("no/such.obj: "), "{error}");
+}
+
+/// Only what makes the surface must be text, and there the line is named.
+#[test]
+fn bytes_of_other_encodings() {
+    let latin: [&[u8]; 10] = [
+        b"# Mod\xe8le de d\xe9monstration",
+        b"o Mod\xe8le",
+        b"g c\xf4t\xe9 gauche",
+        b"usemtl verre d\xe9poli\\\n\xe9",
+        b"mtllib \x83}\x83e.mtl",
+        b"f 1 2 3 # trois\xe8me",
+        b"v 0 0 0#\xff",
+        b"\xe9trange 1 2 3",
+        b"vn \xff",
+        b"# \0 \xff\xfe",
+    ];
+    for line in latin {
+        let mut bytes = line.to_vec();
+        bytes.extend_from_slice(b"\n");
+        bytes.extend_from_slice(SQUARE.as_bytes());
+        let mesh = read_obj_bytes("latin.obj", &[SQUARE.as_bytes(), &bytes].concat());
+        let mesh = mesh.expect("what is skipped may be anything");
+        assert!(mesh.face_count() >= 2, "{}", line.escape_ascii());
+    }
+    for line in [
+        "v 0 0 \\\n0\u{e9}",
+        "vt 0 \u{e9}",
+        "f 1 2 3\u{e9}",
+        "t hole 1/0/0 0 \u{e9}",
+    ] {
+        let mut bytes = SQUARE.as_bytes().to_vec();
+        bytes.extend(line.chars().map(|c| c as u8));
+        let message = refusal(&bytes);
+        assert!(
+            message.starts_with("bad.obj:6: byte 0xe9 is not UTF-8"),
+            "{message}"
+        );
+    }
+}
+
+/// As it comes from modellers: what read well before, and what once did not.
+#[test]
+fn files_in_the_wild() {
+    let square = read(SQUARE);
+    let spellings = [
+        SQUARE.replace('\n', "\r\n"),
+        SQUARE.replace('\n', "\r"),
+        SQUARE.replace('\n', "\r\r\n"),
+        SQUARE.replace("0\nv", "0\rv").replace("\nf", "\r\nf"),
+        SQUARE.trim_end().to_string(),
+        format!("\u{feff}{SQUARE}"),
+        format!("\u{feff}\u{feff}{SQUARE}\u{1a}"),
+        SQUARE.replace(' ', "\t"),
+        SQUARE.replace(' ', " \u{c}\u{b} "),
+        SQUARE.replace(' ', "\u{a0}"),
+        SQUARE.replace("\nv", "\n   v"),
+        SQUARE.replace("v 0 0 0", "v +.0 -0 0.e5"),
+        SQUARE.replace("v 1 0 0", "v 1. 0e-999 0"),
+        SQUARE.replace("0\n", "0 0.5 0.5 0.5\n"),
+        SQUARE.replace("0\n", "0 1.0\n"),
+        SQUARE.replace("v 0 0 0\n", "v 0 0 0 nan nan -1.#IND\n"),
+        SQUARE.replace("f 1 2 3 4", "vn 0 0 1\nf 1//1 2//1 3//1 4//1"),
+        SQUARE.replace("f 1 2 3 4", "f 1/ 2/ 3/ 4/"),
+        SQUARE.replace("f 1 2 3 4", "f 1// 2// 3// 4//"),
+        SQUARE.replace("f 1 2 3 4", "f -4 -3 -2 -1"),
+        SQUARE.replace("f 1 2 3 4", "f +1 +2 03 4"),
+        SQUARE.replace("f 1 2 3 4", "vt 0 0\nf 1/1 2 3//-7 4/-1/0"),
+        SQUARE.replace("f 1 2 3 4", "f 1 2\\\n 3 4 # all\\"),
+        SQUARE.replace("f 1 2 3 4", "f 1 2\\ # two\n3 4\\\n"),
+        format!(
+            "f 1 2 3 4\n{}",
+            SQUARE.replace("f 1 2 3 4\n", "l 1 2 3\np 1 2\ns off\n")
+        ),
+        format!("cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nparm u 0 1\nend\n{SQUARE}"),
+        format!("# {}\n{SQUARE}", "long ".repeat(100_000)),
+        format!("g {}\n{SQUARE}", "long ".repeat(100_000)),
+        format!("{SQUARE}usemtl C:\\textures\\"),
+        format!("{SQUARE}\\\n\\\n\\"),
+    ];
+    for text in spellings {
+        let mesh = read(&text);
+        assert_eq!(mesh.positions(), square.positions(), "{text:?}");
+        assert!(mesh.faces().eq(square.faces()), "{text:?}");
+        assert!(mesh.texture().is_none(), "{text:?}");
+    }
+}
+
+/// A backslash joins whatever comes next, as the format says.
+#[test]
+fn a_backslash_behind_a_name_takes_the_next_statement_along() {
+    let tail = "v 2 0 0\nv 2 1 0\nusemtl other\nf 2 5 6 3\n";
+    let mesh = read(
+        &SQUARE
+            .replace("f 1", "usemtl brushed\\\nf 1")
+            .replace("f 1 2 3 4\n", &format!("f 1 2 3 4\n{tail}")),
+    );
+    assert_eq!(mesh.face_count(), 1);
+    assert_eq!(mesh.face(0), [1, 4, 5, 2]);
+}
+
+#[test]
+fn texture_coordinates_of_one_value_or_none_that_is_finite() {
+    let texture = |statements: [&str; 4]| {
+        let lines: String = statements
+            .iter()
+            .map(|line| format!("vt {line}\n"))
+            .collect();
+        let mesh = read(&SQUARE.replace("f 1 2 3 4", &format!("{lines}f 1/1 2/2 3/3 4/4")));
+        let values = mesh.texture().expect("every corner has one").values.clone();
+        values
+            .iter()
+            .map(|value| value.to_array())
+            .collect::<Vec<_>>()
+    };
+    let values = texture(["0.5", "-1", "1 2 3", "1. # half"]);
+    assert_eq!(values, [[0.5, 0.0], [-1.0, 0.0], [1.0, 2.0], [1.0, 0.0]]);
+    let values = texture(["nan nan", "1 0", "1 1", "-nan(ind) 7"]);
+    assert_eq!(values, [[0.0; 2], [1.0, 0.0], [1.0, 1.0], [0.0; 2]]);
+    let values = texture(["1.#QNAN 0.5", "0.5 -1.#IND00", "-inf", "0.5 0.25 nan"]);
+    assert_eq!(values, [[0.0; 2], [0.0; 2], [0.0; 2], [0.5, 0.25]]);
 }
 
 /// Lines are counted as an editor counts them, comments, CRLF and joined lines included.
@@ -152,6 +292,12 @@ fn lines_count_from_one_through_everything() {
         "has 2 coordinates",
     );
     refused("v 0 0 0\nv 1 0 0\nf 1 \\\n 2 \\\n 3\n", 3, "names vertex 3");
+    refused("v 0 0 0\r# two\r\rv 1 0\r", 4, "has 2 coordinates");
+    refused(
+        "v 0 0 0\r\r\n# two\r\r\nv 1 0\r\r\n",
+        3,
+        "has 2 coordinates",
+    );
 }
 
 #[test]

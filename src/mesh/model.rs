@@ -36,6 +36,11 @@ impl Model {
         &self.topology
     }
 
+    /// Whether anything is drawn of it: any face that is no hole.
+    pub fn has_surface(&self) -> bool {
+        self.topology.has_surface()
+    }
+
     /// What must be added to positions that come from the GPU.
     pub fn centre(&self) -> DVec3 {
         self.centre

@@ -5,6 +5,8 @@
 //! by group and material. The scan therefore hands it only the `v`, `vt` and `f` statements, and [`in_file_order`]
 //! puts one polygon before them that uses every vertex in order.
 
+mod file;
+mod lines;
 mod scan;
 mod tags;
 
@@ -13,34 +15,35 @@ use std::path::Path;
 use crate::error::{Error, Place, Result};
 use crate::mesh::{ControlMesh, FaceVarying};
 use glam::DVec2;
-use scan::{Line, Scan};
+use lines::Line;
+use scan::Scan;
 
 /// Reads an OBJ file with its subdivision tags.
 ///
-/// Vertices and faces keep the order and numbers of the file. See [`read_obj_bytes`] for what is read.
+/// Vertices and faces keep the order and numbers of the file. See [`read_obj_bytes`] for what is read. Files of up to 4 GiB are read, and a GiB
+/// from a pipe, which cannot tell how much there will be.
 ///
 /// # Errors
-/// [`Error::File`] for a file that cannot be read, [`Error::Input`] with file and line for one that has no meaning.
+/// [`Error::File`] for a file that cannot be read, [`Error::Input`] for one that is too large, or a device, and with file and line for one
+/// that has no meaning.
 pub fn read_obj(path: &Path) -> Result<ControlMesh> {
-    let bytes = std::fs::read(path).map_err(|source| Error::File {
-        path: path.to_path_buf(),
-        source,
-    })?;
-    read_obj_bytes(&path.display().to_string(), &bytes)
+    read_obj_bytes(&path.display().to_string(), &file::read(path)?)
 }
 
 /// Reads OBJ text; `name` is what messages call it.
 ///
 /// Read are `v`, `vt`, `f` and the tags `crease` (pairs of vertices), `corner`, `hole`, `interpolateboundary`,
 /// `creasemethod` and `smoothtriangles`. Several creases on one edge all stay, in order: the last one counts.
-/// Texture coordinates are taken when every corner of every face has one. Where only some have one they are ignored, as
-/// are a vertex's weight, hierarchical edits and unknown statements, each with a warning. Normals, groups, materials,
-/// lines and points are skipped; no other file is opened.
+/// Texture coordinates are taken when every corner of every face has one; what one lacks is 0, and so is one that is not finite. Where only some
+/// corners have one they are ignored, as are a vertex's weight, hierarchical edits and unknown statements. Each of these is said in a warning. Normals, groups,
+/// materials, lines and points are skipped; no other file is opened.
+///
+/// Lines may end as on Unix, Windows or old Macs. What is skipped may be in any encoding.
 ///
 /// # Errors
 /// [`Error::Input`] with file and line for text that has no meaning.
 pub fn read_obj_bytes(name: &str, bytes: &[u8]) -> Result<ControlMesh> {
-    let scan = Scan::new(name, decode(name, bytes)?)?;
+    let scan = Scan::new(name, text_of(name, bytes)?)?;
     let geometry = in_file_order(&scan);
     let options = tobj::LoadOptions::default();
     let (models, _) = tobj::load_obj_buf(&mut geometry.as_bytes(), &options, |_| {
@@ -56,19 +59,19 @@ pub fn read_obj_bytes(name: &str, bytes: &[u8]) -> Result<ControlMesh> {
     }
 }
 
-fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Ok(text.trim_start_matches('\u{feff}')),
-        Err(error) => {
-            let valid = &bytes[..error.valid_up_to()];
-            let number = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
-            let byte = bytes.get(valid.len()).copied().unwrap_or_default();
-            Err(Line { file: name, number }.error(
-                format!("byte {byte:#04x} is not UTF-8 text"),
-                "save the file as UTF-8; binary files are not OBJ",
-            ))
-        }
+/// What follows the mark of UTF-8 that some editors put before a text.
+fn text_of<'a>(name: &str, mut bytes: &'a [u8]) -> Result<&'a [u8]> {
+    while let Some(rest) = bytes.strip_prefix("\u{feff}".as_bytes()) {
+        bytes = rest;
     }
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(Error::input(
+            Place::File(name.to_string()),
+            "this is UTF-16 text",
+            "save the file as UTF-8",
+        ));
+    }
+    Ok(bytes)
 }
 
 /// The statements for `tobj`, after a polygon that uses all vertices and texture coordinates in the order of the file.
@@ -150,16 +153,16 @@ fn face_sizes<'a>(name: &str, scan: &'a Scan, read: &tobj::Mesh) -> Result<&'a [
 /// Puts the line in front of what [`ControlMesh`] says about a face, a vertex or an edge.
 fn with_line(name: &str, scan: &Scan, error: Error) -> Error {
     let Error::Input {
-        place,
-        problem,
-        remedy,
+        ref place,
+        ref problem,
+        ref remedy,
     } = error
     else {
         return error;
     };
-    match scan.line_of(&place) {
+    match scan.line_of(place) {
         Some(number) => Line { file: name, number }.error(format!("{place}: {problem}"), remedy),
-        None => Error::input(Place::File(name.to_string()), problem, remedy),
+        None => error.in_file(name),
     }
 }
 

@@ -65,7 +65,7 @@ impl Scheme {
     /// assert_eq!(Scheme::of_file("loophole.obj"), None);
     /// ```
     pub fn of_file(path: impl AsRef<std::path::Path>) -> Option<Scheme> {
-        let stem = path.as_ref().file_stem()?.to_str()?;
+        let stem = path.as_ref().file_stem()?.to_string_lossy();
         let (first, _) = stem.split_once('_')?;
         match first {
             "catmark" => Some(Scheme::CatmullClark),

@@ -182,51 +182,53 @@ impl Topology {
         let is_boundary = |&edge: &u32| self.edge_faces.get(edge).len() < 2;
         let non_manifold = edges.iter().copied().filter(|&e| !manifold[e as usize]);
         match non_manifold.collect::<SmallVec<[u32; 4]>>()[..] {
-            [] => !faces.is_empty() && !self.is_single_fan(vertex),
+            [] => !faces.is_empty() && !self.is_single_fan(vertex, manifold),
             [from, to] if faces.len() > edges.len() && !edges.iter().any(is_boundary) => {
-                !self.fans_span(vertex, from, to)
+                !self.fans_span(vertex, [from, to], manifold)
             }
             _ => true,
         }
     }
 
-    /// Whether all fans of faces around `vertex` lead from edge `from` to edge `to`, the only edges there that are non-manifold or boundaries.
-    fn fans_span(&self, vertex: u32, from: u32, to: u32) -> bool {
+    /// Whether the faces around `vertex` hang together across its edges, all of which are manifold.
+    fn is_single_fan(&self, vertex: u32, manifold: &[bool]) -> bool {
+        let corners = self.vertex_faces.get(vertex);
+        let face = corners[0].face;
+        let [a, b] = self.edges_at(face, vertex);
+        let (mut met, end) = self.sweep(vertex, face, a, manifold);
+        if end != a {
+            met += self.sweep(vertex, face, b, manifold).0 - 1;
+        }
+        met == corners.len()
+    }
+
+    /// Whether all fans of faces around `vertex` lead from one of two edges to the other, the only ones there that are no plain inner edges.
+    fn fans_span(&self, vertex: u32, [from, to]: [u32; 2], manifold: &[bool]) -> bool {
         let mut met = 0;
-        for &first in self.edge_faces.get(from) {
-            let [a, b] = self.edges_at(first, vertex);
-            let mut at = (first, if a == from { b } else { a });
-            met += 1;
-            while at.1 != from && at.1 != to {
-                let Some(next) = self.step(vertex, at.0, at.1) else {
-                    return false;
-                };
-                at = next;
-                met += 1;
-            }
-            if at.1 == from {
+        for &face in self.edge_faces.get(from) {
+            let (faces, end) = self.sweep(vertex, face, from, manifold);
+            if end != to {
                 return false;
             }
+            met += faces;
         }
         met == self.vertex_faces.get(vertex).len()
     }
 
-    /// Whether the faces around `vertex` hang together across its edges.
-    fn is_single_fan(&self, vertex: u32) -> bool {
-        let corners = self.vertex_faces.get(vertex);
-        let mut reached = vec![corners[0].face];
-        let mut next = 0;
-        while next < reached.len() {
-            for edge in self.edges_at(reached[next], vertex) {
-                for &face in self.edge_faces.get(edge) {
-                    if !reached.contains(&face) {
-                        reached.push(face);
-                    }
-                }
-            }
-            next += 1;
+    /// The number of faces around `vertex` that follow each other from `face` on, away from its edge `from`, and the edge at which they end: `from` itself
+    /// where they close.
+    fn sweep(&self, vertex: u32, face: u32, from: u32, manifold: &[bool]) -> (usize, u32) {
+        let [a, b] = self.edges_at(face, vertex);
+        let mut at = (face, if a == from { b } else { a });
+        let mut met = 1;
+        while at.1 != from && manifold[at.1 as usize] {
+            let Some(next) = self.step(vertex, at.0, at.1) else {
+                break;
+            };
+            at = next;
+            met += 1;
         }
-        reached.len() == corners.len()
+        (met, at.1)
     }
 
     /// Computes each edge's sharpness at the next level.
@@ -300,6 +302,11 @@ impl Topology {
     /// Whether a face is a hole: it shapes its neighbours but is not drawn.
     pub fn is_hole(&self, face: u32) -> bool {
         self.holes[face as usize]
+    }
+
+    /// Whether any face is no hole.
+    pub fn has_surface(&self) -> bool {
+        self.holes.contains(&false)
     }
 
     /// The scheme's options.

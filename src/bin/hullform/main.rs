@@ -61,10 +61,18 @@ fn main() -> ExitCode {
     interrupt::listen();
     let global = &arguments.global;
     let result = match &arguments.command {
-        Command::Render(arguments) => render::run(arguments, global),
-        Command::Tessellate(arguments) => tessellate::run(arguments, global),
-        Command::Compare(arguments) => compare::run(arguments, global),
-        Command::Plan(arguments) => plan::run(arguments, global),
+        Command::Render(arguments) => {
+            model::named(arguments.model.as_deref(), render::run(arguments, global))
+        }
+        Command::Tessellate(arguments) => {
+            model::named(Some(&arguments.model), tessellate::run(arguments, global))
+        }
+        Command::Compare(arguments) => {
+            model::named(Some(&arguments.model), compare::run(arguments, global))
+        }
+        Command::Plan(arguments) => {
+            model::named(Some(&arguments.model), plan::run(arguments, global))
+        }
         Command::Devices => devices::run(global),
         Command::Verify(arguments) => verify::run(arguments, global),
     };

@@ -8,13 +8,14 @@ use hullform::mesh::{ControlMesh, Model};
 use hullform::method::method;
 use hullform::plan::PlanOptions;
 use serde_json::{Map, Value, json};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Options of `plan`.
 #[derive(Args)]
 pub struct Arguments {
     /// OBJ file, or builtin:NAME
-    model: String,
+    pub model: PathBuf,
     #[command(flatten)]
     shape: options::Shape,
     /// Deepest level of a plan's quadtree, 1 to 10

@@ -27,7 +27,7 @@ pub const CLEAR: [f32; 4] = [0.0; 4];
 #[derive(Args)]
 pub struct Arguments {
     /// OBJ file, or builtin:NAME [default: the first built-in shape]
-    model: Option<String>,
+    pub model: Option<PathBuf>,
     /// Picture to write
     #[arg(short, long, value_name = "FILE.png", default_value = "hullform.png")]
     output: PathBuf,

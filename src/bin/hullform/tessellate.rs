@@ -16,7 +16,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub struct Arguments {
     /// OBJ file, or builtin:NAME
-    model: String,
+    pub model: PathBuf,
     /// File to write: .csv (a line a point), .obj or .ply (triangles)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,

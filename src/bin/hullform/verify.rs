@@ -16,6 +16,7 @@ use hullform::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 use std::collections::HashMap;
+use std::ffi::OsString;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -26,7 +27,7 @@ use std::time::{Duration, Instant};
 pub struct Arguments {
     /// Meshes of your own: OBJ files, or builtin:NAME. Only the cases that concern meshes run, on these
     #[arg(value_name = "MODEL")]
-    models: Vec<String>,
+    models: Vec<PathBuf>,
     #[command(flatten)]
     shape: options::Shape,
     /// Cases to run: a pattern such as 'scale.*' or '*.quads-*'
@@ -96,18 +97,11 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
 }
 
 /// Names for the meshes: those of their files in small letters, each different.
-fn model_names(models: &[String]) -> Vec<String> {
+fn model_names(models: &[PathBuf]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for model in models {
-        let stem = model.strip_prefix("builtin:").map_or_else(
-            || {
-                Path::new(model)
-                    .file_stem()
-                    .unwrap_or_default()
-                    .to_string_lossy()
-            },
-            Into::into,
-        );
+        let file = || model.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = model::builtin_name(model).map_or_else(file, Into::into);
         let plain = |c: char| {
             if c.is_ascii_alphanumeric() {
                 c.to_ascii_lowercase()
@@ -283,7 +277,7 @@ fn jobs(arguments: &Arguments) -> usize {
 }
 
 /// The command line of a worker.
-fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<String>> {
+fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<OsString>> {
     let mut words: Vec<String> = vec![this_program()?, "verify".into()];
     words.push("--worker".into());
     words.push(format!("--seed={}", arguments.seed));
@@ -305,7 +299,13 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<String>> {
     );
     words.extend(arguments.shape.words());
     words.push("--".into());
-    words.extend(arguments.models.iter().cloned());
+    let mut words: Vec<OsString> = words.into_iter().map(Into::into).collect();
+    words.extend(
+        arguments
+            .models
+            .iter()
+            .map(|model| model.clone().into_os_string()),
+    );
     Ok(words)
 }
 
@@ -319,7 +319,7 @@ fn this_program() -> Result<String> {
     Ok(path.display().to_string())
 }
 
-fn command(words: &[String]) -> Command {
+fn command(words: &[OsString]) -> Command {
     let mut command = Command::new(&words[0]);
     command.args(&words[1..]);
     command
@@ -425,7 +425,7 @@ mod tests {
             "builtin:cubes-2x1x1",
             "my car.obj",
         ];
-        let names = model_names(&models.map(String::from));
+        let names = model_names(&models.map(PathBuf::from));
         assert_eq!(names, ["ship", "ship_2", "cubes_2x1x1", "my_car"]);
     }
 

@@ -1,37 +1,13 @@
 //! The scan: checks every statement while its line is known and keeps those that `tobj` is to read.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::fmt;
 
+use super::lines::{Line, READ, SKIPPED, Statement, for_each_statement};
 use super::tags::Tags;
 use crate::error::{Error, Place, Result};
 
-/// Statements that have no bearing on the surface.
-const SKIPPED: &[&str] = &["vn", "vp", "s", "g", "o", "l", "p", "mtllib", "usemtl"];
-
-/// Where a statement stands.
-#[derive(Clone, Copy)]
-pub(super) struct Line<'a> {
-    pub file: &'a str,
-    pub number: usize,
-}
-
-impl Line<'_> {
-    pub fn error(self, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
-        Error::input(
-            Place::Line(self.file.to_string(), self.number),
-            problem,
-            remedy,
-        )
-    }
-}
-
-impl fmt::Display for Line<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.file, self.number)
-    }
-}
+/// So many kinds of warnings are given for a file. What is no OBJ file at all has a kind on every line.
+const GREATEST_WARNINGS: usize = 20;
 
 /// What a file holds, line by line.
 #[derive(Default)]
@@ -60,13 +36,11 @@ struct Highest {
 }
 
 impl Scan {
-    /// Scans `text`; `file` is what messages call it.
-    pub fn new(file: &str, text: &str) -> Result<Scan> {
+    /// Scans a file's bytes; `file` is what messages call it.
+    pub fn new(file: &str, bytes: &[u8]) -> Result<Scan> {
         let mut scan = Scan::default();
-        for_each_statement(file, text, |line, statement| {
-            scan.statement(line, statement)
-        })?;
-        scan.finish(file)?;
+        for_each_statement(file, bytes, |statement| scan.statement(&statement))?;
+        scan.finish(file, bytes)?;
         Ok(scan)
     }
 
@@ -78,23 +52,52 @@ impl Scan {
         }
     }
 
-    fn statement(&mut self, line: Line, statement: &str) -> Result<()> {
-        let mut words = statement.split_whitespace();
-        let Some(keyword) = words.next() else {
-            return Ok(());
-        };
+    fn statement(&mut self, statement: &Statement) -> Result<()> {
+        let line = statement.line;
+        let text = String::from_utf8_lossy(&statement.text);
+        let mut words = text.split_whitespace();
+        let keyword = words.next().unwrap_or_default();
+        self.check(statement, keyword)?;
         let words: Vec<&str> = words.collect();
         match keyword {
             "v" => self.vertex(line, &words),
             "vt" => self.texture(line, &words),
             "f" => self.face(line, &words),
             "t" => self.tag(line, &words),
+            "" => Ok(()),
             _ if SKIPPED.contains(&keyword) => Ok(()),
             _ => {
                 self.warn_once(line, keyword, "this statement is unknown and ignored");
                 Ok(())
             }
         }
+    }
+
+    /// Refuses a statement that makes the surface and is cut off or no text. Of any other a warning will do.
+    fn check(&mut self, statement: &Statement, keyword: &str) -> Result<()> {
+        let Statement { line, ref text, .. } = *statement;
+        let is_read = READ.contains(&keyword);
+        if let (true, Err(error)) = (is_read, std::str::from_utf8(text)) {
+            return Err(line.error(
+                format!("byte {:#04x} is not UTF-8 text", text[error.valid_up_to()]),
+                "write the numbers of OBJ statements as UTF-8 or ASCII",
+            ));
+        }
+        if let Some(number) = statement.swallowed {
+            let note =
+                "its backslash makes line {} a part of it, which looks like a statement of its own";
+            self.warn_once(line, keyword, &note.replace("{}", &number.to_string()));
+        }
+        if statement.cut_off && is_read {
+            return Err(line.error(
+                "the file ends where a backslash says that the line goes on",
+                "the file may be cut off: write it anew, or remove the backslash",
+            ));
+        }
+        if statement.cut_off {
+            self.warn_once(line, keyword, "the file ends behind its backslash");
+        }
+        Ok(())
     }
 
     fn vertex(&mut self, line: Line, words: &[&str]) -> Result<()> {
@@ -104,12 +107,16 @@ impl Scan {
                 "write three: v x y z",
             ));
         };
-        for word in words {
+        for word in [x, y, z] {
             number(line, "coordinate", word)?;
+        }
+        // Colours may be anything that exporters write for numbers.
+        for word in rest {
+            value(line, "coordinate", word)?;
         }
         // A fourth value alone is a weight, three more are a colour. `tobj` would divide by the weight.
         if let [weight] = rest
-            && number(line, "weight", weight)? != 1.0
+            && value(line, "weight", weight)? != Some(1.0)
         {
             self.warn_once(line, "v", "the fourth value, a weight, is ignored");
         }
@@ -118,18 +125,25 @@ impl Scan {
         Ok(())
     }
 
+    /// `vt u`, `vt u v` or `vt u v w`; what is missing is 0, and so is what some exporter could not compute.
     fn texture(&mut self, line: Line, words: &[&str]) -> Result<()> {
-        let [u, v, ..] = words else {
+        if words.is_empty() {
             return Err(line.error(
-                format!("the texture coordinate has {} values", words.len()),
-                "write two: vt u v",
+                "the texture coordinate has no value",
+                "write one, two or three: vt u v w",
             ));
-        };
-        for word in words {
-            number(line, "texture coordinate", word)?;
         }
+        let mut finite = true;
+        for (i, word) in words.iter().enumerate() {
+            finite &= value(line, "texture coordinate", word)?.is_some() || i > 1;
+        }
+        if !finite {
+            let note = "a texture coordinate is not finite: (0, 0) instead";
+            self.warn_once(line, "vt", note);
+        }
+        let read = |i: usize| words.get(i).copied().filter(|_| finite).unwrap_or("0");
         self.textures += 1;
-        self.keep("vt", &[u, v]);
+        self.keep("vt", &[read(0), read(1)]);
         Ok(())
     }
 
@@ -141,8 +155,14 @@ impl Scan {
             ));
         }
         let mut vertices = Vec::with_capacity(words.len());
+        let mut corners = Vec::with_capacity(words.len());
         for word in words {
-            vertices.push(self.face_corner(line, word)?);
+            let (vertex, texture) = self.face_corner(line, word)?;
+            vertices.push(vertex);
+            corners.push(match texture {
+                Some(texture) => format!("{vertex}/{texture}"),
+                None => vertex.to_string(),
+            });
         }
         vertices.sort_unstable();
         if let Some(pair) = vertices.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -155,12 +175,12 @@ impl Scan {
             .map_err(|_| line.error("the face has too many vertices", "split the face"))?;
         self.face_sizes.push(size);
         self.face_lines.push(line.number);
-        self.keep("f", words);
+        self.keep("f", &corners);
         Ok(())
     }
 
-    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and hands out the vertex's number, counted from 1.
-    fn face_corner(&mut self, line: Line, word: &str) -> Result<usize> {
+    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and hands out the numbers of vertex and texture coordinate, counted from 1.
+    fn face_corner(&mut self, line: Line, word: &str) -> Result<(usize, Option<usize>)> {
         let mut parts = word.split('/');
         let vertex = parts.next().unwrap_or_default();
         let texture = parts.next().unwrap_or_default();
@@ -173,17 +193,22 @@ impl Scan {
         }
         let vertex = index(line, "vertex", vertex, self.vertices)?;
         self.highest_vertex.raise(line, vertex);
-        if texture.is_empty() {
-            self.first_untextured.get_or_insert(line.number);
-        } else {
-            let texture = index(line, "texture coordinate", texture, self.textures)?;
-            self.highest_texture.raise(line, texture);
-            self.textured_corners += 1;
-        }
+        let texture = match texture {
+            "" => {
+                self.first_untextured.get_or_insert(line.number);
+                None
+            }
+            texture => {
+                let texture = index(line, "texture coordinate", texture, self.textures)?;
+                self.highest_texture.raise(line, texture);
+                self.textured_corners += 1;
+                Some(texture)
+            }
+        };
         if !normal.is_empty() && normal.parse::<isize>().is_err() {
             return Err(not_an_index(line, "normal", normal));
         }
-        Ok(vertex)
+        Ok((vertex, texture))
     }
 
     fn tag(&mut self, line: Line, words: &[&str]) -> Result<()> {
@@ -195,13 +220,19 @@ impl Scan {
     }
 
     /// What can be checked only when the whole file is known.
-    fn finish(&mut self, file: &str) -> Result<()> {
+    fn finish(&mut self, file: &str, bytes: &[u8]) -> Result<()> {
         if self.face_sizes.is_empty() {
-            return Err(Error::input(
-                Place::File(file.to_string()),
-                "there is no face",
-                "give at least one `f` line with three or more vertices",
-            ));
+            let (problem, remedy) = match bytes.contains(&0) {
+                true => (
+                    "there is no face, but there are bytes of 0x00: this is no text, or UTF-16",
+                    "name an OBJ file, in UTF-8",
+                ),
+                false => (
+                    "there is no face",
+                    "give at least one `f` line with three or more vertices",
+                ),
+            };
+            return Err(Error::input(Place::File(file.to_string()), problem, remedy));
         }
         self.highest_vertex.check(file, "vertex", self.vertices)?;
         self.highest_texture
@@ -216,19 +247,28 @@ impl Scan {
         Ok(())
     }
 
-    fn keep(&mut self, keyword: &str, words: &[&str]) {
+    fn keep(&mut self, keyword: &str, words: &[impl AsRef<str>]) {
         self.geometry.push_str(keyword);
         for word in words {
             self.geometry.push(' ');
-            self.geometry.push_str(word);
+            self.geometry.push_str(word.as_ref());
         }
         self.geometry.push('\n');
     }
 
     fn warn_once(&mut self, line: Line, key: &str, note: &str) {
-        if self.warned.insert(key.to_string()) {
-            tracing::warn!("{line}: {}: {note}", quoted(key));
+        let known = self.warned.len();
+        if known > GREATEST_WARNINGS || !self.warned.insert(format!("{key}: {note}")) {
+            return;
         }
+        if known == GREATEST_WARNINGS {
+            tracing::warn!(
+                "{line}: {}: there is more like this: no further warnings",
+                quoted(key)
+            );
+            return;
+        }
+        tracing::warn!("{line}: {}: {note}", quoted(key));
     }
 }
 
@@ -260,50 +300,37 @@ impl Highest {
     }
 }
 
-/// Calls `visit` for each statement: comments gone, lines that end with a backslash joined with the next.
-fn for_each_statement(
-    file: &str,
-    text: &str,
-    mut visit: impl FnMut(Line, &str) -> Result<()>,
-) -> Result<()> {
-    let mut lines = (1..).zip(text.lines());
-    while let Some((number, first)) = lines.next() {
-        let line = Line { file, number };
-        let mut statement = Cow::Borrowed(without_comment(first));
-        while statement.ends_with('\\') {
-            let Some((_, next)) = lines.next() else {
-                return Err(line.error(
-                    "the file ends where a backslash says that the line goes on",
-                    "the file may be cut off: write it anew, or remove the backslash",
-                ));
-            };
-            let joined = statement.to_mut();
-            joined.pop();
-            joined.push(' ');
-            joined.push_str(without_comment(next));
-        }
-        visit(line, &statement)?;
-    }
-    Ok(())
-}
-
-fn without_comment(line: &str) -> &str {
-    line.split('#').next().unwrap_or_default().trim_end()
-}
-
 /// A finite number.
 pub(super) fn number(line: Line, what: &str, word: &str) -> Result<f64> {
+    value(line, what, word)?.ok_or_else(|| not_finite(line, what, word))
+}
+
+/// A number; None where the word says that none could be computed: `nan`, `inf`, or what Windows writes for these.
+fn value(line: Line, what: &str, word: &str) -> Result<Option<f64>> {
     match word.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(line.error(
-            format!("the {what} {} is not finite", quoted(word)),
-            "replace NaN, infinite and too large values by numbers",
-        )),
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ if is_name_of_no_number(word) => Ok(None),
+        Ok(_) => Err(not_finite(line, what, word)),
         Err(_) => Err(line.error(
             format!("the {what} {} is not a number", quoted(word)),
             "write a decimal number such as -1.5 or 2e-3",
         )),
     }
+}
+
+fn not_finite(line: Line, what: &str, word: &str) -> Error {
+    line.error(
+        format!("the {what} {} is not finite", quoted(word)),
+        "replace NaN, infinite and too large values by numbers",
+    )
+}
+
+/// Such as `NaN`, `-inf`, `-nan(ind)`, `1.#QNAN0`; a number that is too large to be one is none of these.
+fn is_name_of_no_number(word: &str) -> bool {
+    let plain = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    matches!(plain.as_str(), "nan" | "inf" | "infinity")
+        || plain.starts_with("nan(") && plain.ends_with(')')
+        || plain.starts_with("1.#")
 }
 
 /// The number, counted from 1, that `word` names when `count` of them have been given so far.

@@ -1,6 +1,7 @@
 //! The `t` lines: subdivision tags.
 
-use super::scan::{Line, number, quoted};
+use super::lines::Line;
+use super::scan::{number, quoted};
 use crate::error::{Place, Result};
 use crate::mesh::{
     BoundaryInterpolation, Corner, Crease, CreaseMethod, SchemeOptions, TriangleSubdivision,

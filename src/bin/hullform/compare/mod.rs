@@ -6,7 +6,7 @@ mod page;
 mod picture;
 mod scale;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::Vec3;
@@ -37,7 +37,7 @@ const RANGES: [[i32; 2]; 2] = [[-9, 3], [-5, 2]];
 #[derive(Args)]
 pub struct Arguments {
     /// OBJ file, or builtin:NAME
-    model: String,
+    pub model: PathBuf,
     /// Methods, from the top of the picture [default: all that can draw the model]
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
     methods: Vec<String>,
@@ -101,7 +101,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let reads = model::file(Some(&arguments.model));
     let writes = [("--output", arguments.output.as_path())];
     let files = output::create(reads.as_slice(), &writes)?;
-    let (able, refusals) = sort_out(&model, &asked, arguments.steps.cutting())?;
+    let (able, refusals) = sort_out(&arguments.model, &model, &asked, arguments.steps.cutting())?;
     let mut known = Known::new(reference(&model, against.map(chosen))?);
     let gpu = Gpu::open(global)?;
     let mut columns = Vec::new();
@@ -173,6 +173,7 @@ fn renamed(error: Error, option: &'static str, also: &str) -> Error {
 
 /// The methods that can draw the model, with the number of their patches, and those that refuse.
 fn sort_out(
+    path: &Path,
     model: &Model,
     asked: &[Chosen],
     cutting: Cutting,
@@ -187,7 +188,7 @@ fn sort_out(
             Ok(prepared) => able.push((chosen, patches(&prepared))),
             Err(error) => {
                 let name = chosen.method.name;
-                tracing::warn!("{name} cannot draw this model: {error}");
+                tracing::warn!("{}: {name} cannot draw it: {error}", path.display());
                 refusals.push(Refusal {
                     name,
                     reason: error.to_string(),
@@ -312,7 +313,7 @@ fn report(
         .map(|refusal| json!({ "method": refusal.name, "reason": refusal.reason }));
     let report = json!({
         "output": arguments.output.display().to_string(),
-        "model": arguments.model,
+        "model": arguments.model.display().to_string(),
         "against": arguments.against,
         "level": arguments.steps.level,
         "backend": arguments.steps.cutting().backend.name(),

@@ -129,10 +129,12 @@ fn title(page: &mut Page, arguments: &Arguments) {
         TRUTH => "the limit in double precision",
         method => method,
     };
-    let file = std::path::Path::new(&arguments.model).file_name();
-    let name = file.map_or(arguments.model.as_str().into(), |name| {
-        name.to_string_lossy()
-    });
+    let model = arguments.model.as_os_str();
+    let name = arguments
+        .model
+        .file_name()
+        .unwrap_or(model)
+        .to_string_lossy();
     page.words(MARGIN, MARGIN, Face::Heading, INK, &name);
     let how = format!("tess level {}, against {against}", arguments.steps.level);
     page.words(MARGIN, MARGIN + 22, Face::Small, GREY, &how);

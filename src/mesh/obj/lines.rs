@@ -1,0 +1,153 @@
+//! From bytes to statements: line ends, comments, and lines that a backslash joins.
+//!
+//! Names of groups, materials and files, and comments, may be in any encoding: nothing here asks for UTF-8.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use crate::error::{Error, Place, Result};
+
+/// Statements that make the surface, and those that have no bearing on it.
+pub(super) const READ: &[&str] = &["v", "vt", "f", "t"];
+pub(super) const SKIPPED: &[&str] = &["vn", "vp", "s", "g", "o", "l", "p", "mtllib", "usemtl"];
+
+/// Where a statement stands.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'a> {
+    pub file: &'a str,
+    pub number: usize,
+}
+
+impl Line<'_> {
+    pub fn error(self, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::input(
+            Place::Line(self.file.to_string(), self.number),
+            problem,
+            remedy,
+        )
+    }
+}
+
+impl fmt::Display for Line<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.number)
+    }
+}
+
+/// A statement: its comments are gone, and the lines that its backslashes join are one.
+pub(super) struct Statement<'a> {
+    /// Where it begins.
+    pub line: Line<'a>,
+    pub text: Cow<'a, [u8]>,
+    /// The first line joined to it that could be a statement of its own.
+    pub swallowed: Option<usize>,
+    /// Whether the file ends behind one of its backslashes.
+    pub cut_off: bool,
+}
+
+/// Calls `visit` for each statement of a file.
+pub(super) fn for_each_statement<'a>(
+    file: &'a str,
+    bytes: &'a [u8],
+    mut visit: impl FnMut(Statement<'a>) -> Result<()>,
+) -> Result<()> {
+    let mut lines = (1..).zip(Lines(bytes));
+    while let Some((number, first)) = lines.next() {
+        let mut statement = Statement {
+            line: Line { file, number },
+            text: Cow::Borrowed(without_comment(first)),
+            swallowed: None,
+            cut_off: false,
+        };
+        while statement.text.ends_with(b"\\") {
+            let joined = statement.text.to_mut();
+            joined.pop();
+            let Some((number, next)) = lines.next() else {
+                statement.cut_off = true;
+                break;
+            };
+            if is_statement(next) && !joined.trim_ascii().is_empty() {
+                statement.swallowed.get_or_insert(number);
+            }
+            joined.push(b' ');
+            joined.extend_from_slice(without_comment(next));
+        }
+        visit(statement)?;
+    }
+    Ok(())
+}
+
+/// The lines of a text, which end as they do on Unix, Windows or old Macs. CR CR LF, which a text file becomes that is written
+/// as one twice, is one end.
+struct Lines<'a>(&'a [u8]);
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let end = self.0.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+        let (line, rest) = self.0.split_at(end.unwrap_or(self.0.len()));
+        let ends: [&[u8]; 3] = [b"\r\r\n", b"\r\n", b""];
+        let found = ends.iter().find(|end| rest.starts_with(end));
+        self.0 = match found.map_or(0, |end| end.len()) {
+            0 => rest.get(1..).unwrap_or_default(),
+            length => &rest[length..],
+        };
+        Some(line)
+    }
+}
+
+/// What stands before a `#`, without blanks at its end. In `1.#QNAN`, as Windows once wrote what is no number, it begins no comment.
+fn without_comment(line: &[u8]) -> &[u8] {
+    let begins_comment = |&at: &usize| {
+        let names = ["QNAN", "SNAN", "IND", "INF", "NAN"];
+        let is_name = |name: &&str| line[at + 1..].starts_with(name.as_bytes());
+        line[at] == b'#' && !(line[..at].ends_with(b".") && names.iter().any(is_name))
+    };
+    let end = (0..line.len()).find(begins_comment);
+    line[..end.unwrap_or(line.len())].trim_ascii_end()
+}
+
+/// Whether a line could be a statement that makes the surface.
+fn is_statement(line: &[u8]) -> bool {
+    let mut words = line.split(u8::is_ascii_whitespace);
+    let first = words.find(|word| !word.is_empty()).unwrap_or_default();
+    READ.iter().any(|keyword| keyword.as_bytes() == first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &[u8]) -> Vec<&str> {
+        let text = Lines(text).map(|line| std::str::from_utf8(line).expect("ASCII"));
+        text.collect()
+    }
+
+    #[test]
+    fn lines_end_as_on_unix_windows_and_old_macs() {
+        assert_eq!(lines(b""), [] as [&str; 0]);
+        assert_eq!(lines(b"a"), ["a"]);
+        assert_eq!(lines(b"a\nb\n"), ["a", "b"]);
+        assert_eq!(lines(b"a\r\nb\r\n\r\nc"), ["a", "b", "", "c"]);
+        assert_eq!(lines(b"a\rb\r\rc\r"), ["a", "b", "", "c"]);
+        assert_eq!(lines(b"a\r\r\nb\r\r\n"), ["a", "b"]);
+        assert_eq!(lines(b"a\rb\nc\r\nd\n\re"), ["a", "b", "c", "d", "", "e"]);
+    }
+
+    #[test]
+    fn comments_begin_with_a_sharp_that_belongs_to_no_number() {
+        let kept = |text: &str| without_comment(text.as_bytes()).to_vec();
+        assert_eq!(kept("f 1 2 3 # three"), b"f 1 2 3");
+        assert_eq!(kept("f 1 2 3#three"), b"f 1 2 3");
+        assert_eq!(kept("#"), b"");
+        assert_eq!(
+            kept("vt -1.#IND00 1.#QNAN \t# 1.#INF"),
+            b"vt -1.#IND00 1.#QNAN"
+        );
+        assert_eq!(kept("v 0 0 1.#no number"), b"v 0 0 1.");
+    }
+}

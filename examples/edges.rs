@@ -36,7 +36,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         seed: arguments.seed,
         ..Settings::default()
     };
-    let context = Context::new(settings, Vec::new())?;
+    let context = Context::new(settings, Vec::new());
     let setup = Setup::new(&LEVELS[..arguments.levels]);
     let mut all = Compared::default();
     for name in &arguments.models {

@@ -8,7 +8,7 @@ mod common;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use common::cli::{fails, has_device, run, stderr, stdout};
+use common::cli::{fails, has_device, hullform, run, stderr, stdout};
 use serde_json::Value;
 
 /// A part of each group that is quick and whose cases no driver is known to fail.
@@ -109,6 +109,79 @@ fn a_crash_ends_its_case_and_not_the_suite() {
     let fault = format!("crash:{VICTIM}");
     let found = statuses(&["--filter", PART, "--fault", &fault], 1);
     others_pass(found, "Crash");
+}
+
+/// What a case measured, from the JSON that a run with these arguments prints.
+fn measured(arguments: &[&str], case: &str) -> String {
+    let output = hullform(&[&["verify", "--json"], arguments].concat())
+        .env("RUST_BACKTRACE", "1")
+        .output()
+        .expect("the program starts");
+    let read: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    let results = read["results"].as_array().expect("a list");
+    let found = results.iter().find(|result| result["name"] == case);
+    let measured = found.and_then(|result| result["measured"].as_str());
+    measured.expect("the case has a result").to_owned()
+}
+
+#[test]
+fn a_panic_is_told_as_our_own_and_with_its_message() {
+    if !has_device() {
+        return;
+    }
+    let fault = format!("panic:{VICTIM}");
+    let arguments = ["--filter", PART, "--fault", &fault];
+    others_pass(statuses(&arguments, 1), "Crash");
+    let words = measured(&arguments, VICTIM);
+    assert!(
+        words.starts_with("hullform itself panicked at src"),
+        "{words}"
+    );
+    assert!(words.contains("a fault was seeded"), "{words}");
+    // A crash that is none of ours is told by how the process ended.
+    let fault = format!("crash:{VICTIM}");
+    let words = measured(&["--filter", PART, "--fault", &fault], VICTIM);
+    assert!(words.contains("signal"), "{words}");
+}
+
+/// Nothing can be known of the driver then, but the report is there.
+#[test]
+fn a_driver_that_crashes_while_the_device_is_opened_is_reported() {
+    if !has_device() {
+        return;
+    }
+    let found = statuses(&["--filter", PART, "--fault", "crash:device"], 1);
+    assert!(found.len() > 5);
+    all_are(&found, "Crash");
+    let arguments = ["--filter", PART, "--fault", "panic:device"];
+    all_are(&statuses(&arguments, 1), "Crash");
+    let words = measured(&arguments, VICTIM);
+    assert!(
+        words.starts_with("while the device was opened: "),
+        "{words}"
+    );
+}
+
+/// As when one builds anew while the cases run: the workers are still those of the program that was started.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_that_is_removed_finishes_its_run() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = folder.path().join("hullform");
+    std::fs::copy(env!("CARGO_BIN_EXE_hullform"), &program).expect("a copy");
+    let running = std::process::Command::new(&program)
+        .args(["verify", "--json", "--filter", PART])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .expect("the copy starts");
+    std::fs::remove_file(&program).expect("it is ours");
+    let output = running.wait_with_output().expect("it ends");
+    let read: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(read["unexpected"], 0);
+    assert!(read["results"].as_array().expect("a list").len() > 5);
 }
 
 #[test]
@@ -267,6 +340,47 @@ fn meshes_of_the_user_are_verified() {
     }
     let words = fails(&["verify", "/no/such.obj"], 2);
     assert!(words.contains("/no/such.obj"), "{words}");
+}
+
+/// A face between others, so that it has a surface whatever happens at the boundary, and tags.
+fn sheet_with(tags: &str) -> String {
+    let vertices = (0..16).map(|i| format!("v {} {} {}\n", i % 4, i / 4, i * i % 3));
+    let corners = (0..9).map(|i| 4 * (i / 3) + i % 3 + 1);
+    let faces = corners.map(|a| format!("f {} {} {} {}\n", a, a + 1, a + 5, a + 4));
+    vertices.chain(faces).collect::<String>() + tags
+}
+
+/// What a mesh has no surface for, or no method a way to draw, is nobody's fault.
+#[test]
+fn meshes_that_cannot_be_compared_are_skipped() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let named = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("a file");
+        path.to_str().expect("a plain name").to_owned()
+    };
+    let one_face = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n";
+    let no_boundary = "t interpolateboundary 1/0/0 0\n";
+    let bare = named("bare.obj", &(one_face.to_owned() + no_boundary));
+    for (name, status) in statuses(&[&bare], 0) {
+        assert_eq!(status, "Skip", "{name}");
+    }
+    let alone = named("alone.obj", one_face);
+    let found = statuses(&[&alone], 0);
+    assert_eq!(found["limit.model.alone-equal"], "Pass");
+    assert_eq!(found["edges.model.alone-equal"], "Skip");
+    let sheet = named("sheet.obj", &sheet_with(""));
+    let found = statuses(&["--scheme", "bilinear", &sheet], 0);
+    assert_eq!(found["limit.model.sheet-equal"], "Pass");
+    assert_eq!(found["edges.model.sheet-equal"], "Skip");
+    // The only methods for triangles beside quads have no way to draw this crease.
+    let creased = named("creased.obj", &sheet_with("t crease 2/1/0 5 6 1.5\n"));
+    let output = run(&["verify", "--json", "--scheme", "loop-stam", &creased]);
+    let read: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(read["unexpected"], 0, "{read:#}");
 }
 
 #[test]

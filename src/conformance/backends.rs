@@ -302,6 +302,10 @@ fn tags(
         let depths = (0..model.mesh().vertex_count()).map(|_| random.between(-0.5, 4.5) as f32);
         let tags = DepthTags::new(depths.collect::<Vec<f32>>());
         let drawn = Drawn::new(context, model, prepared, backend, Some(tags), cut)?;
+        let arrived: usize = drawn.passes.iter().map(Vec::len).sum();
+        check.hold(arrived as u64 == drawn.expected, || {
+            format!("{arrived} of {} vertices", drawn.expected)
+        });
         let (open, boundary) = (drawn.open_edges(), drawn.boundary);
         check.hold(open == boundary, || {
             format!("{open} open edges instead of {boundary}")

@@ -7,6 +7,7 @@ use ash::vk;
 
 use crate::abi::{self, Captured};
 use crate::conformance::Context;
+use crate::conformance::context::Seen;
 use crate::error::{Error, Result};
 use crate::gpu::{
     Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target,
@@ -25,7 +26,7 @@ pub const SIDE: u32 = 256;
 const MOST_CAPTURED: u32 = 1_000_000;
 
 /// What pipelines depend on: the shaders of the passes, who cuts, spacing, and what becomes of the triangles.
-type PipelineKey = (Vec<&'static str>, Backend, Spacing, bool);
+type PipelineKey = (Vec<&'static str>, Backend, Spacing, bool, vk::CullModeFlags);
 
 /// A device with what surfaces share, kept from case to case: pipelines take long to build.
 pub struct Bench {
@@ -33,11 +34,12 @@ pub struct Bench {
     layout: Option<Layout>,
     target: OffscreenTarget,
     pipelines: RefCell<HashMap<PipelineKey, Pipelines>>,
+    seen: Seen,
 }
 
 impl Bench {
-    /// What surfaces need on a device.
-    pub fn new(device: &Device) -> Result<Bench> {
+    /// What surfaces need on a device; vertices and pixels that come back are counted in `seen`.
+    pub fn new(device: &Device, seen: &Seen) -> Result<Bench> {
         let target = OffscreenTarget::with_encoding(device, SIDE, SIDE, 1, Encoding::Unorm)?;
         // SAFETY: the device is live.
         let layout = unsafe { Layout::new(device.raw()) }?;
@@ -46,6 +48,7 @@ impl Bench {
             layout: Some(layout),
             target,
             pipelines: RefCell::default(),
+            seen: seen.clone(),
         })
     }
 
@@ -81,6 +84,7 @@ impl Bench {
             options,
             view: from_the_side(reach(model)),
             tags: None,
+            cull: vk::CullModeFlags::NONE,
             surface: Some(surface?),
         };
         self.device.submit(|cmd| {
@@ -101,13 +105,15 @@ impl Bench {
         backend: Backend,
         spacing: Spacing,
         fill: Fill,
+        cull: vk::CullModeFlags,
         use_them: impl FnOnce(&Pipelines) -> Result<T>,
     ) -> Result<T> {
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, backend, spacing, fill == Fill::Discard);
+        let key = (shaders, backend, spacing, fill == Fill::Discard, cull);
         let mut all = self.pipelines.borrow_mut();
         if !all.contains_key(&key) {
-            let built = self.build(prepared, backend, spacing, fill, vk::PipelineCache::null())?;
+            let cache = vk::PipelineCache::null();
+            let built = self.build(prepared, backend, spacing, fill, cull, cache)?;
             all.insert(key.clone(), built);
         }
         use_them(&all[&key])
@@ -120,12 +126,13 @@ impl Bench {
         backend: Backend,
         spacing: Spacing,
         fill: Fill,
+        cull: vk::CullModeFlags,
         cache: vk::PipelineCache,
     ) -> Result<Pipelines> {
         let target = Target {
             render_pass: self.target.render_pass(),
             samples: self.target.samples(),
-            cull: vk::CullModeFlags::NONE,
+            cull,
             compare: vk::CompareOp::LESS_OR_EQUAL,
         };
         let (device, layout) = (self.device.raw(), self.layout());
@@ -152,7 +159,8 @@ impl Bench {
         let cache = unsafe { device.create_pipeline_cache(&info, None) }
             .map_err(crate::gpu::failed("vkCreatePipelineCache"))?;
         let backend = Backend::Tessellator;
-        let built = self.build(prepared, backend, spacing, fill, cache);
+        let cull = vk::CullModeFlags::NONE;
+        let built = self.build(prepared, backend, spacing, fill, cull, cache);
         // SAFETY: the cache is ours, and the pipelines do not need it any more.
         let held = unsafe {
             let held = device.get_pipeline_cache_data(cache);
@@ -160,9 +168,13 @@ impl Bench {
             held.map_err(crate::gpu::failed("vkGetPipelineCacheData"))
         };
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, backend, spacing, fill == Fill::Discard);
+        let key = (shaders, backend, spacing, fill == Fill::Discard, cull);
         self.pipelines.borrow_mut().insert(key, built?);
         held
+    }
+
+    fn saw(&self, count: usize) {
+        self.seen.set(self.seen.get() + count as u64);
     }
 
     fn forget(&self) {
@@ -218,6 +230,8 @@ pub struct Loaded<'a> {
     pub view: View,
     /// A depth for each control vertex, where levels go by them.
     pub tags: Option<DepthTags>,
+    /// Which triangles pictures leave out.
+    pub cull: vk::CullModeFlags,
     surface: Option<TessellatedSurface>,
 }
 
@@ -312,6 +326,7 @@ impl Loaded<'_> {
             self.options.backend,
             cut.spacing,
             fill,
+            self.cull,
             |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 device.submit(|cmd| unsafe {
@@ -335,6 +350,7 @@ impl Loaded<'_> {
         )?;
         let expected = batches.iter().map(|batch| batch.vertices).sum();
         let (captured, differing) = self.captured(expected)?;
+        self.bench.saw(captured.len());
         Ok(Frame {
             passes: vec![captured],
             counters: self.surface().counters(),
@@ -377,6 +393,7 @@ impl Loaded<'_> {
             self.options.backend,
             cut.spacing,
             Fill::Solid,
+            self.cull,
             |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 device.submit(|cmd| unsafe {
@@ -391,12 +408,13 @@ impl Loaded<'_> {
             },
         )?;
         match self.surface().counters().overflows {
-            0 => Ok(target
-                .read_pixels()
-                .into_iter()
-                .skip(3)
-                .step_by(4)
-                .collect()),
+            0 => {
+                let alphas = target.read_pixels().into_iter().skip(3).step_by(4);
+                let alphas: Vec<u8> = alphas.collect();
+                self.bench
+                    .saw(alphas.iter().filter(|&&alpha| alpha != 0).count());
+                Ok(alphas)
+            }
             patches => Err(Error::Refused(format!("{patches} patches were left out"))),
         }
     }

@@ -16,7 +16,7 @@ pub enum Status {
     Fail,
     /// The device lacks what the case needs.
     Skip,
-    /// The process ended in the middle of the case.
+    /// The process ended in the middle of the case, or the case panicked, which is our own fault.
     Crash,
     /// Repetitions ended differently.
     Flake,
@@ -117,6 +117,19 @@ impl Finding {
             measured: measured.into(),
         }
     }
+
+    /// The finding of a case that saw so many vertices, words or pixels of what it drew. Where all that was compared is missing, everything
+    /// seems to agree; so who saw nothing found nothing out. No case is an exception: one that expects nothing to arrive also draws
+    /// something that must.
+    fn unless_blind(self, seen: u64) -> Finding {
+        match self.status {
+            Status::Pass | Status::Warn if seen == 0 => Finding::fail(format!(
+                "nothing that was drawn arrived, neither vertex nor pixel; {}",
+                self.measured
+            )),
+            _ => self,
+        }
+    }
 }
 
 /// Collects what does not hold, and tells the first of it.
@@ -193,10 +206,13 @@ impl Case {
         Case { limit, ..self }
     }
 
-    /// Runs it. A Vulkan call that fails, or a message of the validation layer, is a failure of the case.
+    /// Runs it. A Vulkan call that fails, or a message of the validation layer, is a failure of the case; so is it when nothing of what
+    /// was drawn came back.
     pub fn run(&self, context: &Context) -> Finding {
         let before = context.validation_messages().len();
+        context.take_seen();
         let found = (self.run)(context).unwrap_or_else(|error| Finding::fail(error.to_string()));
+        let found = found.unless_blind(context.take_seen());
         match context.validation_messages().get(before) {
             Some(message) => Finding::fail(format!("validation: {message}; {}", found.measured)),
             None => found,
@@ -225,6 +241,16 @@ mod tests {
     #[test]
     fn a_check_of_nothing_fails() {
         assert_eq!(Check::default().finish("").status, Status::Fail);
+    }
+
+    #[test]
+    fn who_sees_nothing_does_not_pass() {
+        for found in [Finding::pass("56 of 56"), Finding::warn("slow")] {
+            assert_eq!(found.clone().unless_blind(1), found);
+            assert_eq!(found.unless_blind(0).status, Status::Fail);
+        }
+        let skipped = Finding::skip("no such feature");
+        assert_eq!(skipped.clone().unless_blind(0), skipped);
     }
 
     #[test]

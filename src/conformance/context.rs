@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, OnceCell};
 use std::fmt;
+use std::rc::Rc;
 use std::str::FromStr;
 
 use glob::Pattern;
@@ -51,7 +52,7 @@ impl Default for Settings {
 pub struct Fault {
     /// What goes wrong.
     pub kind: FaultKind,
-    /// The cases in which it does.
+    /// The cases in which it does; `device` stands for the moment when the device is opened.
     pub cases: Pattern,
 }
 
@@ -62,15 +63,18 @@ pub enum FaultKind {
     Wrong,
     /// The process aborts.
     Crash,
+    /// Our own code panics.
+    Panic,
     /// The case never ends.
     Hang,
     /// Every second run fails.
     Flicker,
 }
 
-const FAULTS: [(&str, FaultKind); 4] = [
+const FAULTS: [(&str, FaultKind); 5] = [
     ("wrong", FaultKind::Wrong),
     ("crash", FaultKind::Crash),
+    ("panic", FaultKind::Panic),
     ("hang", FaultKind::Hang),
     ("flicker", FaultKind::Flicker),
 ];
@@ -89,7 +93,8 @@ impl FromStr for Fault {
         read().ok_or_else(|| Error::Option {
             option: "--fault",
             problem: format!("'{text}' is no fault"),
-            remedy: "write wrong, crash, hang or flicker, then ':' and a pattern of cases".into(),
+            remedy: "write wrong, crash, panic, hang or flicker, then ':' and a pattern of cases"
+                .into(),
         })
     }
 }
@@ -110,19 +115,23 @@ pub struct Context {
     pub settings: Settings,
     /// The user's models by name; none when the suite runs on its own.
     pub models: Vec<(String, Model)>,
-    instance: Instance,
+    instance: OnceCell<Instance>,
     bench: OnceCell<Bench>,
     robust_bench: OnceCell<Bench>,
     device: OnceCell<Device>,
     memory_model_device: OnceCell<Device>,
     wrong: Cell<bool>,
+    seen: Seen,
 }
 
+/// How many vertices, words or pixels the case that runs has seen of what it drew.
+pub(super) type Seen = Rc<Cell<u64>>;
+
 impl Context {
-    /// Loads Vulkan. Devices are opened when a case asks for one.
-    pub fn new(settings: Settings, models: Vec<(String, Model)>) -> Result<Context> {
-        Ok(Context {
-            instance: Instance::new(settings.validation)?,
+    /// Vulkan is loaded, and devices are opened, when a case asks for one: what goes wrong meanwhile belongs to that case.
+    pub fn new(settings: Settings, models: Vec<(String, Model)>) -> Context {
+        Context {
+            instance: OnceCell::new(),
             settings,
             models,
             bench: OnceCell::new(),
@@ -130,7 +139,8 @@ impl Context {
             device: OnceCell::new(),
             memory_model_device: OnceCell::new(),
             wrong: Cell::new(false),
-        })
+            seen: Seen::default(),
+        }
     }
 
     /// The device.
@@ -140,7 +150,7 @@ impl Context {
 
     /// The device with what our surfaces share.
     pub(super) fn bench(&self) -> Result<&Bench> {
-        opened(&self.bench, || Bench::new(self.device()?))
+        opened(&self.bench, || Bench::new(self.device()?, &self.seen))
     }
 
     /// The same with robust buffer access: on a logical device of its own.
@@ -150,7 +160,7 @@ impl Context {
                 robust_buffer_access: true,
                 ..Default::default()
             };
-            Bench::new(&self.open(extra)?)
+            Bench::new(&self.open(extra)?, &self.seen)
         })
     }
 
@@ -165,7 +175,8 @@ impl Context {
     }
 
     fn open(&self, extra: ExtraFeatures) -> Result<Device> {
-        Device::open_with(&self.instance, self.settings.device.as_deref(), extra)
+        let instance = opened(&self.instance, || Instance::new(self.settings.validation))?;
+        Device::open_with(instance, self.settings.device.as_deref(), extra)
     }
 
     /// The workarounds for our own surfaces.
@@ -187,9 +198,30 @@ impl Context {
         self.wrong.get()
     }
 
+    /// A mesh of the user's.
+    ///
+    /// # Errors
+    /// When there is none of this name.
+    pub(super) fn model(&self, name: &str) -> Result<&Model> {
+        let found = self.models.iter().find(|(known, _)| known == name);
+        let (_, model) = found.ok_or_else(|| Error::Refused(format!("there is no {name}")))?;
+        Ok(model)
+    }
+
+    /// Counts what a case sees of what it drew. A case that sees nothing does not pass, see [`Case::run`](super::Case::run).
+    pub(super) fn saw(&self, count: u64) {
+        self.seen.set(self.seen.get() + count);
+    }
+
+    /// What was seen since this was asked last.
+    pub(super) fn take_seen(&self) -> u64 {
+        self.seen.take()
+    }
+
     /// Every validation message so far.
     pub fn validation_messages(&self) -> Vec<String> {
-        self.instance.validation_messages()
+        let instance = self.instance.get();
+        instance.map_or_else(Vec::new, Instance::validation_messages)
     }
 
     /// Seeds the fault, if there is one for the case `name` that is about to run for the `run`-th time.
@@ -202,6 +234,7 @@ impl Context {
             Some(FaultKind::Wrong) => true,
             Some(FaultKind::Flicker) => run % 2 == 1,
             Some(FaultKind::Crash) => std::process::abort(),
+            Some(FaultKind::Panic) => panic!("a fault was seeded in {name}"),
             Some(FaultKind::Hang) => loop {
                 std::thread::park();
             },
@@ -224,7 +257,7 @@ mod tests {
 
     #[test]
     fn faults_read_back() {
-        for text in ["wrong:*", "crash:a.b.*", "hang:x", "flicker:?"] {
+        for text in ["wrong:*", "crash:a.b.*", "panic:y", "hang:x", "flicker:?"] {
             let fault: Fault = text.parse().expect(text);
             assert_eq!(fault.to_string(), text);
         }

@@ -3,7 +3,7 @@
 //! Each case captures a surface twice under conditions that should not matter. A seeded fault moves a control vertex of the second.
 
 use crate::conformance::capture::{
-    Frame, SPACINGS, bits, captured, capturing, cut, over_patches, prepare, spacing_name,
+    Frame, SPACINGS, bits, captured, capturing, cut, over_patches, prepare, spacing_name, vertices,
 };
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
@@ -98,8 +98,13 @@ fn cases() -> Vec<Case> {
 fn check(context: &Context, condition: &Condition, shape: &str, cut: Cut) -> Result<Finding> {
     let model = Model::new(builtin(shape)?);
     let prepared = prepare(&model, "quadtree")?;
+    let predicted = vertices(&prepared, cut) as usize;
     let first = captured(context, &model, prepared, cut, Fill::Discard)?;
+    let arrived: usize = first.passes.iter().map(Vec::len).sum();
     let mut check = Check::default();
+    check.hold(arrived == predicted, || {
+        format!("{arrived} vertices instead of {predicted}")
+    });
     check.hold(first.differing == 0, || {
         format!("{} vertices came twice, with other bits", first.differing)
     });
@@ -109,8 +114,7 @@ fn check(context: &Context, condition: &Condition, shape: &str, cut: Cut) -> Res
         model
     };
     (condition.second)(context, &again, cut, &mut check, &first)?;
-    let vertices: usize = first.passes.iter().map(Vec::len).sum();
-    Ok(check.finish(format!("{vertices} vertices")))
+    Ok(check.finish(format!("{arrived} vertices")))
 }
 
 /// A mesh with one vertex moved by a part in 10,000.

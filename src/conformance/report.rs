@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::conformance::Status;
+use crate::conformance::{Case, Finding, Status};
 
 /// How a case ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +47,21 @@ pub struct Report {
 }
 
 impl Report {
+    /// The report of cases none of which could be run, for a reason that all have in common.
+    pub fn lost(cases: &[Case], reason: &Finding) -> Report {
+        let result = |case: &Case| CaseResult {
+            name: case.name.clone(),
+            status: reason.status,
+            found: reason.status,
+            measured: reason.measured.clone(),
+            reason: None,
+            seconds: 0.0,
+        };
+        Report {
+            results: cases.iter().map(result).collect(),
+        }
+    }
+
     /// How many ended so.
     pub fn count(&self, status: Status) -> usize {
         let same = |result: &&CaseResult| result.status == status;

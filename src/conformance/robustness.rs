@@ -49,20 +49,25 @@ const DISCARDING: [(&str, f32); 5] = [
 fn discards(domain: Domain) -> impl Iterator<Item = Case> {
     DISCARDING.into_iter().map(move |(word, level)| {
         let name = format!("robustness.discard.{}-{word}", domain.name());
-        let rule = "a patch with such an outer level has no vertices";
+        let rule = "a patch with such an outer level has no vertices, the one behind it has all of its own";
         Case::new(name, rule, DISCARD, move |context| {
             let level = if context.is_wrong() { 2.0 } else { level };
-            let count = TessLevels::uniform(4.0).outer(domain).len();
-            let table: Vec<TessLevels> = (0..count).map(|place| with_outer(place, level)).collect();
+            let ordinary = TessLevels::uniform(4.0);
+            let count = ordinary.outer(domain).len();
+            let discarded = (0..count).map(|place| with_outer(place, level));
+            let table: Vec<TessLevels> = discarded.chain([ordinary]).collect();
             let mut check = Check::default();
             for spacing in Spacing::ALL {
                 let modes = Modes::new(domain, spacing);
                 let shot = shoot(context, modes, &table, Raster::Solid)?;
-                for (place, patch) in shot.patches.iter().enumerate() {
+                for (place, patch) in shot.patches[..count].iter().enumerate() {
                     check.hold(patch.is_empty(), || {
                         format!("level {level} of edge {place}: {} vertices", patch.len())
                     });
                 }
+                check.hold(!shot.patches[count].is_empty(), || {
+                    "the patch behind them did not arrive".into()
+                });
             }
             Ok(check.finish(format!("{count} edges, 3 spacings")))
         })
@@ -151,7 +156,7 @@ fn inner(domain: Domain) -> Vec<Case> {
     INNER.map(case).into()
 }
 
-/// A draw that makes so many patches.
+/// Draws that make so many patches. The last patch of each is an ordinary one, which must arrive.
 struct EmptyDraw {
     name: &'static str,
     rule: &'static str,
@@ -164,20 +169,32 @@ const EMPTY: [EmptyDraw; 5] = [
     EmptyDraw {
         name: "no_vertices",
         rule: "a draw of no vertices draws nothing",
-        patches: 0,
-        record: |cmd| cmd.draw(0, 1, 0, 0),
+        patches: 1,
+        record: |cmd| {
+            cmd.draw(0, 1, 0, 0);
+            cmd.barrier();
+            cmd.draw(3, 1, 0, 3);
+        },
     },
     EmptyDraw {
         name: "no_instances",
         rule: "a draw of no instances draws nothing",
-        patches: 0,
-        record: |cmd| cmd.draw(3, 0, 0, 0),
+        patches: 1,
+        record: |cmd| {
+            cmd.draw(3, 0, 0, 0);
+            cmd.barrier();
+            cmd.draw(3, 1, 0, 3);
+        },
     },
     EmptyDraw {
         name: "incomplete_patch",
         rule: "vertices too few for a patch draw nothing",
-        patches: 0,
-        record: |cmd| cmd.draw(2, 1, 0, 0),
+        patches: 1,
+        record: |cmd| {
+            cmd.draw(2, 1, 0, 0);
+            cmd.barrier();
+            cmd.draw(3, 1, 0, 3);
+        },
     },
     EmptyDraw {
         name: "surplus_vertices",
@@ -341,6 +358,10 @@ fn corrupt(context: &Context, shape: &str, spoiled: Spoiled, word: &str) -> Resu
     let after = draw(prepare(&model, "quadtree")?)?;
     let mut check = Check::default();
     check.hold(changed > 0, || "no word was changed".into());
+    let counts = [&before, &after].map(|frame| frame.passes.iter().map(Vec::len).sum::<usize>());
+    check.hold(counts[0] == counts[1] && counts[0] > 0, || {
+        format!("{} vertices before, {} afterwards", counts[0], counts[1])
+    });
     let vertices = before.passes.iter().flatten();
     for (vertex, right) in after.passes.iter().flatten().zip(vertices) {
         let mut found = bits(vertex);

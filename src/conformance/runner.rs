@@ -8,8 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::conformance::worker::{Answer, request};
-use crate::conformance::{Case, CaseResult, Expectations, Finding, Report, Status};
+use crate::conformance::worker::{Answer, DEVICE, request};
+use crate::conformance::{Case, CaseResult, Expectations, Finding, Opened, Report, Status};
 
 /// How long a worker may take until it is ready. Loading a driver takes less than a second; a busy machine gets more.
 const START: Duration = Duration::from_secs(60);
@@ -20,8 +20,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// How long a wait lasts before somebody looks whether it is still wanted.
 const GLANCE: Duration = Duration::from_millis(50);
 
-/// What is kept of the last that a worker said, in bytes.
-const LAST_WORDS: usize = 4096;
+/// What is kept of the last that a worker said, in bytes: the backtrace of a panic, and what stands before it.
+const LAST_WORDS: usize = 1 << 16;
 
 /// How cases are run.
 #[derive(Clone, Debug)]
@@ -45,18 +45,26 @@ pub struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// Runs all cases; `done` hears of each result as it comes, and the report has them in the cases' order.
+    /// Lets a worker open the device and say which it is. A finding instead when the driver crashes or hangs meanwhile
+    /// ([`Status::Crash`], [`Status::Timeout`]), and when there is no such device ([`Status::Fail`]). None once another thread sets `stop`.
+    pub fn device(&self, stop: &AtomicBool) -> Option<Result<Opened, Finding>> {
+        let found = self.once(DEVICE, 0, START, stop, &mut None)?;
+        Some(match Opened::parse(&found.measured) {
+            Some(opened) if found.status == Status::Pass => Ok(opened),
+            _ => Err(found),
+        })
+    }
+
+    /// Runs all cases; `done` hears of each result as it comes, and the report has them in the cases' order. Where no worker can be started, the
+    /// case's result says so.
     ///
     /// Once another thread sets `stop`, no case begins, those that run are ended with their workers, and the report has what was done.
-    ///
-    /// # Errors
-    /// When no worker can be started at all.
     pub fn run(
         &self,
         cases: &[Case],
         stop: &AtomicBool,
         mut done: impl FnMut(&CaseResult),
-    ) -> io::Result<Report> {
+    ) -> Report {
         let next = AtomicUsize::new(0);
         let (sender, results) = mpsc::channel();
         thread::scope(|scope| {
@@ -67,13 +75,12 @@ impl Runner<'_> {
             drop(sender);
             let mut report: Vec<Option<CaseResult>> = vec![None; cases.len()];
             for (place, result) in results {
-                let result = result?;
                 done(&result);
                 report[place] = Some(result);
             }
-            Ok(Report {
+            Report {
                 results: report.into_iter().flatten().collect(),
-            })
+            }
         })
     }
 
@@ -83,18 +90,16 @@ impl Runner<'_> {
         cases: &[Case],
         next: &AtomicUsize,
         stop: &AtomicBool,
-        results: &mpsc::Sender<(usize, io::Result<CaseResult>)>,
+        results: &mpsc::Sender<(usize, CaseResult)>,
     ) {
         let mut worker = None;
         loop {
             let place = next.fetch_add(1, Ordering::Relaxed);
             let Some(case) = cases.get(place) else { return };
-            let Some(result) = self.repeated(case, stop, &mut worker).transpose() else {
+            let Some(result) = self.repeated(case, stop, &mut worker) else {
                 return;
             };
-            let failed = result.is_err();
-            if results.send((place, result)).is_err() || failed {
-                next.store(cases.len(), Ordering::Relaxed);
+            if results.send((place, result)).is_err() {
                 return;
             }
         }
@@ -106,13 +111,12 @@ impl Runner<'_> {
         case: &Case,
         stop: &AtomicBool,
         worker: &mut Option<Worker>,
-    ) -> io::Result<Option<CaseResult>> {
+    ) -> Option<CaseResult> {
         let started = Instant::now();
+        let limit = self.options.limit.unwrap_or(case.limit);
         let mut findings: Vec<Finding> = Vec::new();
         for run in 0..self.options.repeat.max(1) {
-            let Some(finding) = self.once(case, run, stop, worker)? else {
-                return Ok(None);
-            };
+            let finding = self.once(&case.name, run, limit, stop, worker)?;
             let lost = matches!(finding.status, Status::Crash | Status::Timeout);
             findings.push(finding);
             if lost {
@@ -121,54 +125,53 @@ impl Runner<'_> {
         }
         let Finding { status, measured } = together(findings);
         let (judged, reason) = self.expectations.judge(&case.name, status);
-        Ok(Some(CaseResult {
+        Some(CaseResult {
             name: case.name.clone(),
             status: judged,
             found: status,
             measured,
             reason: reason.map(String::from),
             seconds: started.elapsed().as_secs_f64(),
-        }))
+        })
     }
 
     /// Runs a case once; None if it was stopped. A worker that is lost in it is replaced for the next.
     fn once(
         &self,
-        case: &Case,
+        name: &str,
         run: u32,
+        limit: Duration,
         stop: &AtomicBool,
         worker: &mut Option<Worker>,
-    ) -> io::Result<Option<Finding>> {
-        let limit = self.options.limit.unwrap_or(case.limit);
+    ) -> Option<Finding> {
+        let lost = |status, measured| Some(Finding { status, measured });
         for last_try in [false, true] {
-            let mut at_work = match worker.take() {
-                Some(worker) => worker,
-                None => Worker::start((self.worker)())?,
+            let started = worker
+                .take()
+                .map_or_else(|| Worker::start((self.worker)()), Ok);
+            let mut at_work = match started {
+                Ok(worker) => worker,
+                Err(error) => {
+                    let measured = format!("no worker could be started: {error}");
+                    return lost(Status::Crash, measured);
+                }
             };
-            match at_work.run(&case.name, run, limit, stop) {
+            match at_work.run(name, run, limit, stop) {
                 Outcome::Found(finding) => {
                     *worker = Some(at_work);
-                    return Ok(Some(finding));
+                    return Some(finding);
                 }
                 Outcome::Stopped => {
                     at_work.kill();
-                    return Ok(None);
+                    return None;
                 }
                 Outcome::Late(seconds) => {
                     at_work.kill();
-                    return Ok(Some(Finding {
-                        status: Status::Timeout,
-                        measured: format!("no answer after {seconds} s"),
-                    }));
+                    return lost(Status::Timeout, format!("no answer after {seconds} s"));
                 }
                 // What an earlier case left behind shall not count against this one.
                 Outcome::Lost { begun: false } if !last_try => drop(at_work.ended()),
-                Outcome::Lost { .. } => {
-                    return Ok(Some(Finding {
-                        status: Status::Crash,
-                        measured: at_work.ended(),
-                    }));
-                }
+                Outcome::Lost { .. } => return lost(Status::Crash, at_work.ended()),
             }
         }
         unreachable!("the last try returns")
@@ -296,7 +299,7 @@ impl Worker {
         }
     }
 
-    /// How it ended, and the last line that it said.
+    /// How it ended, and the last that it said.
     fn ended(mut self) -> String {
         let how = self.reap();
         // What it said is complete when the pipe is closed, unless a child of its own still holds it.
@@ -308,10 +311,8 @@ impl Worker {
             .last_words
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        let words = String::from_utf8_lossy(&words).into_owned();
-        let last = words.lines().rev().find(|line| !line.trim().is_empty());
-        match last {
-            Some(line) => format!("the process ended: {how}; its last line: {line}"),
+        match last_message(&String::from_utf8_lossy(&words)) {
+            Some(message) => format!("the process ended: {how}; the last it said: {message}"),
             None => format!("the process ended: {how}"),
         }
     }
@@ -341,6 +342,27 @@ impl Drop for Worker {
     fn drop(&mut self) {
         self.reap();
     }
+}
+
+/// The last message in what a process said: of a panic all but its backtrace and the hint how to get one, otherwise the last line.
+fn last_message(words: &str) -> Option<String> {
+    let mut lines = words.lines().skip_while(|line| !is_panic(line)).peekable();
+    let panic = lines.next();
+    let Some(panic) = panic else {
+        let last = words.lines().rev().find(|line| !line.trim().is_empty());
+        return last.map(String::from);
+    };
+    // The first panic is the cause of others; what it says goes on to the backtrace, or the hint in its place.
+    let message = lines.take_while(|line| {
+        !is_panic(line) && !line.starts_with("stack backtrace:") && !line.starts_with("note: ")
+    });
+    let all: Vec<&str> = std::iter::once(panic).chain(message).collect();
+    Some(all.join(" ").trim().to_owned())
+}
+
+/// Whether this is how a panic begins: `thread 'main' panicked at src/x.rs:1:2:`.
+fn is_panic(line: &str) -> bool {
+    line.starts_with("thread ") && line.contains(" panicked at ")
 }
 
 /// Waits until `there` is, at most for `patience`.
@@ -375,9 +397,26 @@ mod tests {
     }
 
     #[test]
+    fn the_message_is_told_and_not_the_hint_behind_it() {
+        let panic =
+            "noise\nthread 'main' panicked at src/a.rs:1:2:\nindex out of bounds:\nthe len is 0\n";
+        let backtrace = "stack backtrace:\n   0: rust_begin_unwind\n   1: main\n";
+        let hint = "note: Some details are omitted, run with `RUST_BACKTRACE=full`\n";
+        let second = "thread 'main' panicked at library/core:2:3:\npanic in a destructor\n";
+        let wanted = "thread 'main' panicked at src/a.rs:1:2: index out of bounds: the len is 0";
+        for tail in ["", hint, backtrace, &[backtrace, hint, second].concat()] {
+            let message = last_message(&[panic, tail].concat());
+            assert_eq!(message.as_deref(), Some(wanted));
+        }
+        let other = last_message("lavapipe: assertion failed\n\n");
+        assert_eq!(other.as_deref(), Some("lavapipe: assertion failed"));
+        assert_eq!(last_message(" \n"), None);
+    }
+
+    #[test]
     fn only_the_last_words_are_kept() {
         let kept = Mutex::default();
-        let said: Vec<u8> = (0..=9999u32).map(|i| i as u8).collect();
+        let said: Vec<u8> = (0..=99_999u32).map(|i| i as u8).collect();
         keep_last(&said[..], &kept);
         let kept = kept.into_inner().expect("nobody panicked");
         assert_eq!(kept, said[said.len() - LAST_WORDS..]);
@@ -410,9 +449,7 @@ mod tests {
             let case = |name: &str| Case::new(name, "rule", "source", |_| Ok(Finding::pass("")));
             let cases: Vec<Case> = ["g.s.a", "g.s.bad", "g.s.b", "g.s.c"].map(case).into();
             let mut heard = 0;
-            let report = runner
-                .run(&cases, &AtomicBool::new(false), |_| heard += 1)
-                .expect("sh starts");
+            let report = runner.run(&cases, &AtomicBool::new(false), |_| heard += 1);
             assert_eq!(heard, 4);
             report
         }
@@ -473,11 +510,32 @@ mod tests {
                 },
             };
             let case = Case::new("g.s.a", "rule", "source", |_| Ok(Finding::pass("")));
-            let report = runner
-                .run(&[case], &AtomicBool::new(false), |_| ())
-                .expect("sh starts");
+            let report = runner.run(&[case], &AtomicBool::new(false), |_| ());
             assert_eq!(report.results[0].status, Status::Crash);
             assert!(report.results[0].measured.contains("no driver"));
+        }
+
+        /// The program was removed, or there is no memory for another process.
+        #[test]
+        fn a_worker_that_is_not_there_loses_no_result() {
+            let runner = Runner {
+                worker: &|| Command::new("/no/such/program"),
+                expectations: &Expectations::default(),
+                options: RunOptions {
+                    repeat: 1,
+                    jobs: 2,
+                    limit: None,
+                },
+            };
+            let case = |name: &str| Case::new(name, "rule", "source", |_| Ok(Finding::pass("")));
+            let still = AtomicBool::new(false);
+            let report = runner.run(&["g.s.a", "g.s.b", "g.s.c"].map(case), &still, |_| ());
+            assert_eq!(statuses(&report), [Status::Crash; 3]);
+            let words = &report.results[2].measured;
+            assert!(words.starts_with("no worker could be started: "), "{words}");
+            let device = runner.device(&still).expect("nobody stops it");
+            let lost = device.expect_err("there is none");
+            assert_eq!(lost.status, Status::Crash);
         }
     }
 }

@@ -220,8 +220,10 @@ fn draw(context: &Context, load: Load) -> Result<Traces> {
         cmd.bind(pipeline, &constants);
         load.record(cmd);
     })?;
+    let notes: Vec<Note> = bytemuck::cast_slice(raw.words(NOTES)).to_vec();
+    context.saw(notes.iter().map(|note| u64::from(note.evaluations)).sum());
     Ok(Traces {
-        notes: bytemuck::cast_slice(raw.words(NOTES)).to_vec(),
+        notes,
         pixels: raw.pixels(),
     })
 }

@@ -88,6 +88,7 @@ const BATCHES: u32 = 16;
 
 /// Words and results on the device, and a pipeline for a form.
 struct Bed<'a> {
+    context: &'a Context,
     raw: Raw<'a>,
     pipeline: ash::vk::Pipeline,
 }
@@ -116,12 +117,17 @@ impl Bed<'_> {
             constant: invocations,
             raster: Raster::Discard,
         })?;
-        Ok(Bed { raw, pipeline })
+        Ok(Bed {
+            context,
+            raw,
+            pipeline,
+        })
     }
 
     fn run(&self, draws: impl FnOnce(&Recorder<'_>)) -> Result<Found> {
         self.raw.submit(None, draws)?;
         let words = self.raw.words(RESULTS);
+        self.context.saw(words[0].into());
         Ok(Found {
             compared: words[0],
             wrong: words[1],

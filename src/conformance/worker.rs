@@ -2,14 +2,21 @@
 //!
 //! Both directions are lines of text. A request is `RUN NAME`, where RUN counts repetitions from 0. The answers are [`READY`] once, and for
 //! each request `begin` and `end STATUS MEASURED`, all behind [`MARK`]: a driver may print whatever it likes.
+//!
+//! A panic is a fault of ours, and shall not look like one of the driver's: it is caught and told as what it is, and the process makes way for
+//! another.
 
 use std::io::{BufRead, Write};
-use std::sync::mpsc;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-use crate::conformance::{Context, Finding, Registry, Status};
+use crate::conformance::{Context, Finding, Opened, Registry, Status};
 
 /// Stands before every line that is meant for the runner.
 pub(super) const MARK: &str = "hullform-verify ";
+
+/// The name of the request to open the device and say which it is.
+pub(super) const DEVICE: &str = "device";
 
 /// The worker is ready for requests.
 pub(super) const READY: &str = "ready";
@@ -74,6 +81,7 @@ pub fn work(
         std::thread::sleep(std::time::Duration::from_secs(5));
         std::process::exit(1);
     });
+    let said = listen_to_panics();
     let mut answer = |answer: Answer| {
         writeln!(output, "{}", answer.line())?;
         output.flush()
@@ -84,19 +92,73 @@ pub fn work(
             continue;
         };
         answer(Answer::Begin)?;
-        context.seed_fault(name, run.parse().unwrap_or(0));
-        let finding = registry.find(name).map_or_else(
-            || Finding::fail("the worker knows no such case"),
-            |case| case.run(context),
-        );
-        answer(Answer::End(finding))?;
+        let run = run.parse().unwrap_or(0);
+        // Nothing that a panic may have left half-done is used again.
+        let found = catch_unwind(AssertUnwindSafe(|| {
+            context.seed_fault(name, run);
+            find_out(context, registry, name)
+        }));
+        let panicked = found.is_err();
+        answer(Answer::End(found.unwrap_or_else(|_| our_own(&said))))?;
+        if panicked {
+            return Ok(());
+        }
     }
     Ok(())
+}
+
+fn find_out(context: &Context, registry: &Registry, name: &str) -> Finding {
+    if name == DEVICE {
+        let device = context.device();
+        return match device {
+            Ok(device) => Finding::pass(Opened::of(device.info()).line()),
+            Err(error) => Finding::fail(error.to_string()),
+        };
+    }
+    registry.find(name).map_or_else(
+        || Finding::fail("the worker knows no such case"),
+        |case| case.run(context),
+    )
+}
+
+/// Keeps what the last panic said, beside printing it as before.
+fn listen_to_panics() -> Arc<Mutex<String>> {
+    let said = Arc::<Mutex<String>>::default();
+    let (kept, print) = (said.clone(), std::panic::take_hook());
+    std::panic::set_hook(Box::new(move |panic| {
+        *kept.lock().unwrap_or_else(PoisonError::into_inner) = panic.to_string();
+        print(panic);
+    }));
+    said
+}
+
+/// The finding of a case that panicked.
+fn our_own(said: &Mutex<String>) -> Finding {
+    let said = said.lock().unwrap_or_else(PoisonError::into_inner);
+    Finding {
+        status: Status::Crash,
+        measured: format!("hullform itself {said}; report this, it is no fault of the driver's"),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_panic_is_told_as_our_own() {
+        let said = listen_to_panics();
+        let caught = catch_unwind(|| panic!("no cuts at all"));
+        assert!(caught.is_err());
+        let found = our_own(&said);
+        assert_eq!(found.status, Status::Crash);
+        let words = &found.measured;
+        assert!(
+            words.contains("panicked at src/conformance/worker.rs:"),
+            "{words}"
+        );
+        assert!(words.contains("no cuts at all"), "{words}");
+    }
 
     #[test]
     fn answers_read_back() {

@@ -6,11 +6,10 @@ use crate::output::{self, Contents, Pending, junit};
 use crate::{interrupt, model, print, print_json};
 use clap::Args;
 use hullform::conformance::{
-    Case, CaseResult, Context, Expectations, Fault, Registry, Report, RunOptions, Runner, Settings,
-    work,
+    Case, CaseResult, Context, Expectations, Fault, Finding, Opened, Registry, Report, RunOptions,
+    Runner, Settings, Status, work,
 };
-use hullform::gpu::Driver;
-use hullform::host::{Device, DeviceInfo, Instance};
+use hullform::host::{Device, Instance};
 use hullform::mesh::Model;
 use hullform::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -20,6 +19,7 @@ use std::ffi::OsString;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Options of `verify`.
@@ -137,7 +137,7 @@ fn be_worker(
         seed: arguments.seed,
         fault: arguments.fault.clone(),
     };
-    let context = Context::new(settings, models.collect::<Result<_>>()?)?;
+    let context = Context::new(settings, models.collect::<Result<_>>()?);
     let worked = work(
         &context,
         registry,
@@ -206,12 +206,10 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
         model::load(Some(model), &arguments.shape)?;
     }
     let files = Files::create(arguments)?;
-    let device = chosen_device(global)?;
-    let expectations = expectations(arguments, &device.driver)?;
     let worker = worker(arguments, global)?;
-    let runner = Runner {
+    let mut runner = Runner {
         worker: &|| command(&worker),
-        expectations: &expectations,
+        expectations: &Expectations::default(),
         options: RunOptions {
             repeat: arguments.repeat,
             jobs: jobs(arguments),
@@ -219,16 +217,24 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
         },
     };
     let started = Instant::now();
-    let bar = progress(cases.len());
     let asking = interrupt::ask();
-    let report = runner.run(cases, asking.asked(), |result| show(&bar, result));
-    bar.finish_and_clear();
-    let report = report.map_err(|source| Error::File {
-        path: worker[0].clone().into(),
-        source,
-    })?;
+    let device = chosen_device(&runner, asking.asked(), global)?;
+    let opened = device.as_ref().and_then(|found| found.as_ref().ok());
+    let expectations = expectations(arguments, opened)?;
+    runner.expectations = &expectations;
+    let report = match &device {
+        // Interrupted before anything began.
+        None => Report::default(),
+        Some(Ok(_)) => {
+            let bar = progress(cases.len());
+            let report = runner.run(cases, asking.asked(), |result| show(&bar, result));
+            bar.finish_and_clear();
+            report
+        }
+        Some(Err(lost)) => lost_device(cases, lost),
+    };
     let seconds = started.elapsed().as_secs_f64();
-    let json = as_json(arguments, &device, &expectations, cases, &report, seconds);
+    let json = as_json(arguments, opened, &expectations, cases, &report, seconds);
     // Of a run that found nothing, interrupted early, nothing is written over an older one's results.
     if cases.is_empty() || !report.results.is_empty() {
         files.write(&report, &json)?;
@@ -236,7 +242,7 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
     if global.prints_json() {
         print_json(&json)?;
     } else {
-        print(&summary(&device, &expectations, &report, seconds))?;
+        print(&summary(opened, &expectations, &report, seconds))?;
     }
     if report.results.len() < cases.len() {
         let (done, all) = (report.results.len(), cases.len());
@@ -252,17 +258,36 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
     }
 }
 
-/// The device that workers will open; closed again at once.
-fn chosen_device(global: &Global) -> Result<DeviceInfo> {
-    let instance = Instance::new(global.validation)?;
-    Ok(Device::open(&instance, global.device.as_deref())?
-        .info()
-        .clone())
+/// The device that workers open, as one of them says; a finding where the driver crashes or hangs meanwhile, and None when interrupted.
+fn chosen_device(
+    runner: &Runner<'_>,
+    stop: &AtomicBool,
+    global: &Global,
+) -> Result<Option<std::result::Result<Opened, Finding>>> {
+    let found = runner.device(stop);
+    if matches!(&found, Some(Err(finding)) if finding.status == Status::Fail) {
+        // It ended in order there, and so does here, with an error that has an exit code.
+        let instance = Instance::new(global.validation)?;
+        Device::open(&instance, global.device.as_deref())?;
+    }
+    Ok(found)
 }
 
-fn expectations(arguments: &Arguments, driver: &Driver) -> Result<Expectations> {
+/// No case can run, and the report says of each why.
+fn lost_device(cases: &[Case], lost: &Finding) -> Report {
+    let measured = format!("while the device was opened: {}", lost.measured);
+    eprint_line(&format!("{} {measured}", lost.status));
+    let reason = Finding {
+        measured,
+        ..lost.clone()
+    };
+    Report::lost(cases, &reason)
+}
+
+fn expectations(arguments: &Arguments, device: Option<&Opened>) -> Result<Expectations> {
     let Some(path) = &arguments.expectations else {
-        return Ok(Expectations::of(driver));
+        let known = device.map(|device| Expectations::of(&device.driver));
+        return Ok(known.unwrap_or_default());
     };
     let text = std::fs::read_to_string(path).map_err(|source| Error::File {
         path: path.clone(),
@@ -309,8 +334,16 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<OsString>> {
     Ok(words)
 }
 
-/// Where this program is; without `/proc`, as in some containers, what it was called by.
+/// Linux's name for the program that a process was started from, whatever has become of its file since: a process that has just been forked has the
+/// runner's.
+const OWN: &str = "/proc/self/exe";
+
+/// Where this program is; without `/proc`, as in some containers, where it was or what it was called by. A program that is built anew while
+/// its cases run shall not take its results for theirs, nor be missing.
 fn this_program() -> Result<String> {
+    if std::fs::metadata(OWN).is_ok() {
+        return Ok(OWN.into());
+    }
     let path = std::env::current_exe().ok();
     let called = || std::env::args_os().next().map(PathBuf::from);
     let path = path.or_else(called).ok_or_else(|| {
@@ -348,12 +381,15 @@ fn eprint_line(line: &str) {
 }
 
 fn summary(
-    device: &DeviceInfo,
+    device: Option<&Opened>,
     expectations: &Expectations,
     report: &Report,
     seconds: f64,
 ) -> String {
-    let mut lines = vec![format!("{}, {}", device.name, device.driver.info)];
+    let mut lines = vec![match device {
+        Some(device) => format!("{}, {}", device.name, device.driver.info),
+        None => "a device that could not be opened".into(),
+    }];
     if !expectations.name.is_empty() {
         lines.push(format!("expectations: {}", expectations.name));
     }
@@ -375,7 +411,7 @@ fn summary(
 
 fn as_json(
     arguments: &Arguments,
-    device: &DeviceInfo,
+    device: Option<&Opened>,
     expectations: &Expectations,
     cases: &[Case],
     report: &Report,
@@ -396,13 +432,13 @@ fn as_json(
         })
     });
     json!({
-        "device": device.name,
-        "driver": {
-            "id": device.driver.id.as_raw(),
-            "name": device.driver.name,
-            "info": device.driver.info,
-            "version": device.driver.version.to_string(),
-        },
+        "device": device.map(|device| &device.name),
+        "driver": device.map(|Opened { driver, .. }| json!({
+            "id": driver.id.as_raw(),
+            "name": driver.name,
+            "info": driver.info,
+            "version": driver.version.to_string(),
+        })),
         "expectations": (!expectations.name.is_empty()).then_some(&expectations.name),
         "seed": arguments.seed,
         "repeat": arguments.repeat,

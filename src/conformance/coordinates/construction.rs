@@ -10,7 +10,7 @@ use super::shot::{Shot, edge, point, shoot};
 use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Check, Context, Finding};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The device's greatest level.
 pub fn most(context: &Context) -> Result<f32> {
@@ -31,10 +31,17 @@ fn cuts(context: &Context, modes: Modes, levels: &[f32]) -> Result<HashMap<u32, 
     let shot = shoot(context, modes, &table, Raster::Discard)?;
     let measured = levels.iter().zip(&shot.patches).map(|(level, patch)| {
         let places = edge(modes.domain, patch, 0);
+        // Both ends at least: everything else is constructed from them.
+        if places.len() < 2 {
+            return Err(Error::Refused(format!(
+                "level {level}: {} vertices on the first edge",
+                places.len()
+            )));
+        }
         let cuts = places.iter().map(|&bits| f64::from(f32::from_bits(bits)));
-        (level.to_bits(), cuts.collect())
+        Ok((level.to_bits(), cuts.collect()))
     });
-    Ok(measured.collect())
+    measured.collect()
 }
 
 /// The vertices that a patch should have.

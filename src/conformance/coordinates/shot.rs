@@ -69,6 +69,7 @@ pub fn shoot_with(
         draws(cmd);
     })?;
     let primitives = query.map(|query| query.read()).transpose()?;
+    context.saw(raw.words(1)[0].into());
     Ok(Shot {
         patches: sorted(raw.words(1), room, table.len())?,
         drawn: raw.pixels().iter().filter(|&&pixel| pixel != 0).count(),

@@ -2,13 +2,13 @@
 
 use crate::conformance::capture::{SPACINGS, spacing_name};
 use crate::conformance::edges::{
-    Drawn, LEVELS, LineKind, Setup, compare, finding, pictures, random_mesh,
+    Drawn, LEVELS, LineKind, Setup, compare, compare_users, finding, pictures, random_mesh,
 };
 use crate::conformance::meshes::{
     can_draw, creased_polygons, creased_sheet, framed_polygon, moved, open_star, sheet, star, under,
 };
-use crate::conformance::{Case, Context};
-use crate::error::{Error, Result};
+use crate::conformance::{Case, Context, models};
+use crate::error::Result;
 use crate::gpu::Slots;
 use crate::mesh::{ControlMesh, CreaseMethod, Model, Scheme, SchemeOptions, builtin};
 use crate::method::{METHODS, MethodOptions, TableNormals, TableOptions};
@@ -57,11 +57,9 @@ pub(super) fn model_cases(name: &str) -> Vec<Case> {
                 ..Setup::new(&[1.0, 3.0, 8.0])
             };
             Case::new(name, RULE, SOURCE, move |context| {
-                let found = context.models.iter().find(|(name, _)| *name == model);
-                let (_, model) =
-                    found.ok_or_else(|| Error::Refused(format!("there is no {model}")))?;
-                Ok(finding(&compare(context, model, &setup)?))
+                compare_users(context, context.model(&model)?, &setup)
             })
+            .within(models::LIMIT)
         })
         .into()
 }

@@ -14,7 +14,7 @@ mod shared;
 use crate::conformance::capture::{Loaded, SPACINGS, capturing, cut};
 use crate::conformance::determinism::{ONE_A_TIME, smallest_ring, whole_ring};
 use crate::conformance::meshes::Draft;
-use crate::conformance::{Context, Finding, Group};
+use crate::conformance::{Context, Finding, Group, models};
 use crate::error::Result;
 use crate::gpu::{Cut, Fill, Slots, SurfaceOptions};
 use crate::mesh::{ControlMesh, Model};
@@ -101,22 +101,57 @@ impl Setup {
 /// Vulkan's.
 pub fn compare(context: &Context, model: &Model, setup: &Setup) -> Result<Compared> {
     let mut compared = Compared::default();
-    let able = METHODS
-        .iter()
-        .filter(|method| method.check_model(model).is_ok());
-    for method in able.filter(|method| method.contract.watertight) {
-        compared.add(compare_method(context, model, setup, method)?);
+    for method in watertight(model) {
+        let prepared = method.prepare(model, setup.options)?;
+        compared.add(compare_prepared(context, model, setup, prepared)?);
     }
     Ok(compared)
 }
 
-fn compare_method(
+/// The methods that draw a model and promise to be watertight.
+fn watertight(model: &Model) -> impl Iterator<Item = &'static Method> {
+    let whole = METHODS.iter().filter(|method| method.contract.watertight);
+    whole.filter(|method| method.check_model(model).is_ok())
+}
+
+/// The same for a mesh of the user's, with what there is to say where nothing can be compared. Methods that refuse it do not count.
+fn compare_users(context: &Context, model: &Model, setup: &Setup) -> Result<Finding> {
+    if !models::shares_something(model) {
+        return Ok(Finding::skip("its faces share neither edge nor vertex"));
+    }
+    let (mut compared, mut skipped, mut drawn) = (Compared::default(), None, false);
+    for method in watertight(model) {
+        match models::prepared(model, method, setup.options) {
+            Ok(prepared) => {
+                drawn = true;
+                let most = setup
+                    .cuts()
+                    .into_iter()
+                    .max_by(|a, b| a.level.total_cmp(&b.level));
+                let prepared = match most {
+                    Some(cut) => models::bounded(prepared, cut),
+                    None => prepared,
+                };
+                compared.add(compare_prepared(context, model, setup, prepared)?);
+            }
+            Err(finding) => skipped = skipped.or(Some(finding)),
+        }
+    }
+    let scheme = model.mesh().options().scheme;
+    let none = || format!("no method that promises to be watertight draws this mesh of {scheme}");
+    Ok(match (drawn, skipped) {
+        (true, _) => finding(&compared),
+        (false, Some(skipped)) => skipped,
+        (false, None) => Finding::skip(none()),
+    })
+}
+
+fn compare_prepared(
     context: &Context,
     model: &Model,
     setup: &Setup,
-    method: &Method,
+    prepared: Prepared,
 ) -> Result<Compared> {
-    let prepared = method.prepare(model, setup.options)?;
     let cuts = setup.cuts();
     let options = options(context, &prepared, &cuts, setup.drawn);
     let workarounds = match setup.drawn {

@@ -104,10 +104,13 @@ fn run() -> Result<(), Box<dyn Error>> {
     // 3. The model on the device: buffers and descriptor sets, no commands yet. One `Layout` serves all surfaces of a device. The ring is the
     //    scratch memory that control shaders pass on; it bounds the memory, not the model: what does not fit is drawn in more batches.
     // SAFETY: the device has what `Support` asks for; allocator and layout are its own.
-    let layout = Own::new(unsafe { Layout::new(&device)? }, |layout| {
-        // SAFETY: see step 2.
-        unsafe { layout.destroy(&device) };
-    });
+    let layout = Own::new(
+        unsafe { Layout::new(&device, features.enabled()?)? },
+        |layout| {
+            // SAFETY: see step 2.
+            unsafe { layout.destroy(&device) };
+        },
+    );
     // Vertices are counted, so that step 9 can tell whether all have come. That is for a picture that must be right; a game would not.
     let options = SurfaceOptions {
         count_vertices: true,
@@ -205,8 +208,9 @@ fn run() -> Result<(), Box<dyn Error>> {
         unsafe { pipelines.destroy(&device) };
     });
 
-    // 7. The batches of this cut. They depend on the level and the ring's size, so keep them while the level stays.
-    let batches = surface.batches(cut)?;
+    // 7. What is drawn at this cut, in batches that the ring holds: a plain value. Keep it while the level stays. With `Slots::Host`, depth tags
+    //    or another backend `write_draws` would bring what it decided to the device.
+    let list = surface.draw_list(cut, None)?;
 
     // 8. Recording. The order is: upload (once), prepare (a frame, outside of the render pass), draws (inside), read-back (optional).
     let info = vk::CommandPoolCreateInfo::default().queue_family_index(family);
@@ -255,9 +259,9 @@ fn run() -> Result<(), Box<dyn Error>> {
         device.cmd_set_scissor(cmd, 0, &[area]);
     }
     let view = view(&model);
-    for batch in &batches {
+    for batch in list.batches() {
         // SAFETY: in subpass 0 of the pipelines' render pass, which depends on itself as it must; the batches come in their order.
-        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, &view, cut, batch) };
+        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, &view, batch)? };
     }
     // Your other objects can be drawn here: bind their pipelines and descriptor sets again, `cmd_draw` has bound its own.
     let copy = vk::BufferImageCopy::default()
@@ -305,8 +309,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     });
     let commands = [cmd];
     let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
-    // SAFETY: the command buffer has been ended; nobody else uses the queue. The staging memory can go once it has been copied, unless
-    // positions will be replaced.
+    // SAFETY: the command buffer has been ended; nobody else uses the queue. The memory that tables were staged in can go once they
+    // have been copied.
     unsafe {
         device
             .queue_submit(queue, &submit, vk::Fence::null())
@@ -319,16 +323,16 @@ fn run() -> Result<(), Box<dyn Error>> {
     }
     // A control shader may run more than once for a patch. Then the slots of a batch can run out: patches that got none were left out and
     // counted. An engine draws such a frame again with `Slots::Host`, which does not depend on that, or simply always uses it.
-    let counters = surface.counters();
+    let counters = surface.counters()?;
     if counters.overflows > 0 {
         return Err(format!("{} patches found no room in the ring", counters.overflows).into());
     }
     // A driver that loses draws says nothing. Whether all vertices came that were predicted is known because they were counted.
-    surface.arrival(cut, &batches).check()?;
+    surface.arrival(list.batches())?.check()?;
     write_png(pixels.bytes())?;
     println!(
         "headless.png: {} batches, {} points through the ring, on {}",
-        batches.len(),
+        list.batches().len(),
         counters.points,
         driver.info
     );

@@ -1,8 +1,12 @@
 //! Everything that can go wrong, in words that speak of the user's own file.
 
+mod misuse;
+
 use std::borrow::Cow;
 use std::fmt;
 use std::path::PathBuf;
+
+pub use misuse::Misuse;
 
 /// Shorthand for results of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -145,6 +149,9 @@ pub enum Error {
         /// What is missing, and of how much.
         what: String,
     },
+    /// The library was asked for what cannot be drawn.
+    #[error(transparent)]
+    Misuse(Misuse),
     /// A result was refused because it would be wrong (validation messages, lost patches).
     #[error("{0}")]
     Refused(String),
@@ -189,6 +196,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input { .. } | Error::File { .. } | Error::Option { .. } => 2,
+            Error::Misuse(_) => 2,
             Error::NoDevice(_) => 3,
             Error::OutOfMemory { .. }
             | Error::DeviceLost { .. }

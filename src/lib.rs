@@ -11,11 +11,12 @@
 //! 4. [`method`](mod@method): a way to draw. It prepares a model as tables for the GPU, and says what it promises. Each comes with a twin, which
 //!    evaluates in f32 from the same tables what the shader evaluates.
 //! 5. [`tessellation`]: tess levels that agree on both sides of every edge.
-//! 6. `gpu` (feature `vulkan`): tables to buffers, pipelines, and draws recorded into your command buffer.
-//! 7. `host` (feature `host`): a device and an offscreen picture, for those who have none.
-//! 8. `conformance` (feature `host`): the suite of `hullform verify`, for drivers and for ourselves.
+//! 6. [`frame`]: what a frame decides about a surface: a draw list, a plain value.
+//! 7. `gpu` (feature `vulkan`): tables to buffers, pipelines, and draws recorded into your command buffer.
+//! 8. `host` (feature `host`): a device and an offscreen picture, for those who have none.
+//! 9. `conformance` (feature `host`): the suite of `hullform verify`, for drivers and for ourselves.
 //!
-//! Up to `tessellation` everything is plain CPU code. It is not a helper of the GPU: it is what the GPU is tested against.
+//! Up to `frame` everything is plain CPU code. It is not a helper of the GPU: it is what the GPU is tested against.
 //!
 //! ```
 //! use hullform::glam::Vec2;
@@ -84,15 +85,20 @@
 //! **The render pass** needs one thing: the subpass must depend on itself as `gpu::ring::ring_dependency` says. Control shaders hand points
 //! to evaluation shaders through a ring in memory; batches that use it one after another have a barrier between them.
 //!
-//! **Dynamic rendering** allows no such barrier. Set `gpu::SurfaceOptions::barriers` to false; before each batch whose `gpu::Batch::waits`
+//! **Dynamic rendering** allows no such barrier. Set `gpu::SurfaceOptions::barriers` to false; before each batch whose `frame::Batch::waits`
 //! is true, end rendering, record `gpu::ring::cmd_ring_barrier` and your attachments' barrier, and begin again with `LOAD`. With a ring
 //! that holds the whole model there is one batch that uses it, and nothing to wait for.
 //!
 //! **Frames in flight** may share a surface on one queue: `cmd_prepare` waits for the shaders of earlier frames. Frames that shall overlap
 //! need a surface each. What the host writes (positions, slots, levels, patterns) and reads (counters, captures) is not doubled: see there.
 //!
-//! **Levels.** All patches have the level of the `gpu::Cut`, unless `gpu::TessellatedSurface::write_draws` gets `method::DepthTags`: a depth for
-//! each control vertex, by distance, picture or curvature, or of your own. It is called between frames, when nothing submitted uses the surface.
+//! **Draw lists.** `gpu::TessellatedSurface::draw_list` decides what a frame draws: a [`frame::DrawList`], a plain value that is kept as long as
+//! the level stays. All patches have the level of its [`frame::Cut`], unless it is made with [`method::DepthTags`]: a depth for each control
+//! vertex, by distance, picture or curvature, or of your own. What the host decides about single patches is brought to the device by
+//! `gpu::TessellatedSurface::write_draws`, between frames, when nothing submitted uses the surface.
+//!
+//! **Misuse** is refused with [`Error::Misuse`], before anything is recorded or written: levels that are no levels, another mesh's tables,
+//! another surface's draw list, pipelines for something else, buffers that shaders cannot see, a device without the features.
 //!
 //! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
 //! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with
@@ -107,6 +113,7 @@ pub mod abi;
 #[cfg(feature = "host")]
 pub mod conformance;
 pub mod error;
+pub mod frame;
 #[cfg(feature = "vulkan")]
 pub mod gpu;
 #[cfg(feature = "host")]
@@ -119,7 +126,7 @@ pub mod plan;
 pub mod subdivision;
 pub mod tessellation;
 
-pub use error::{Error, Place, Result};
+pub use error::{Error, Misuse, Place, Result};
 // The crates whose types stand in this one's interface, in the version that it uses.
 pub use glam;
 #[cfg(feature = "vulkan")]

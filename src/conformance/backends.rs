@@ -15,7 +15,7 @@ use crate::conformance::capture::{Frame, SPACINGS, bits, capturing, cut, prepare
 use crate::conformance::meshes::{can_draw, under};
 use crate::conformance::{Case, Check, Context, Finding, Group, Random};
 use crate::error::Result;
-use crate::gpu::{Backend, Cut, Fill, SurfaceOptions, TessellatedSurface, shaders};
+use crate::gpu::{Backend, Cut, DrawList, Fill, SurfaceOptions, shaders};
 use crate::mesh::{Model, builtin};
 use crate::method::{DepthTags, METHODS, Method, Prepared};
 use crate::tessellation::Spacing;
@@ -122,18 +122,19 @@ impl Drawn {
         let mut loaded = bench.load(model, prepared, &workarounds, options)?;
         loaded.tags = tags;
         let frame = loaded.capture(cut, Fill::Solid)?;
-        let surface = loaded.surface();
-        let passes = surface.prepared().passes.iter().enumerate();
+        let list = loaded.draw_list(cut)?;
+        let prepared = loaded.prepared();
+        let passes = prepared.passes.iter().enumerate();
         let patches = passes.flat_map(|(number, pass)| {
             (0..pass.patches.len() as u32).map(move |patch| (number, patch))
         });
         let patches: Vec<(usize, u32)> = patches.collect();
-        let vertices = |&(pass, patch)| u64::from(surface.vertices(cut, pass, patch));
-        let boundary = |&(pass, patch)| boundary(model, surface, cut, pass, patch);
+        let vertices = |&(pass, patch)| u64::from(list.vertices(prepared, pass, patch));
+        let boundary = |&(pass, patch)| boundary(model, prepared, &list, cut, pass, patch);
         Ok(Drawn {
             expected: patches.iter().map(vertices).sum(),
             boundary: patches.iter().map(boundary).sum(),
-            triangles: triangles(surface, &frame, cut),
+            triangles: triangles(prepared, &list, &frame),
             primitives: frame.statistics.map(|[_, _, primitives]| primitives),
             passes: frame.passes,
         })
@@ -167,7 +168,8 @@ impl Drawn {
 /// The segments of a patch's edges beyond which there is no face that is drawn.
 fn boundary(
     model: &Model,
-    surface: &TessellatedSurface,
+    prepared: &Prepared,
+    list: &DrawList,
     cut: Cut,
     pass: usize,
     patch: u32,
@@ -177,8 +179,8 @@ fn boundary(
         let faces = (side < topology.edge_count() as u32).then(|| topology.edge_faces(side));
         faces.is_some_and(|all| all.iter().filter(|&&face| !topology.is_hole(face)).count() == 1)
     };
-    let levels = surface.levels(cut, pass, patch);
-    let sides = surface.prepared().passes[pass].sides[patch as usize];
+    let levels = list.levels(prepared, pass, patch);
+    let sides = prepared.passes[pass].sides[patch as usize];
     let edges = sides
         .into_iter()
         .zip(levels.edges)
@@ -189,12 +191,12 @@ fn boundary(
 }
 
 /// The triangles of each pass, as the bits of their positions.
-fn triangles(surface: &TessellatedSurface, frame: &Frame, cut: Cut) -> Vec<Vec<[[u32; 3]; 3]>> {
+fn triangles(prepared: &Prepared, list: &DrawList, frame: &Frame) -> Vec<Vec<[[u32; 3]; 3]>> {
     let of_pass = |(pass, vertices): (usize, &Vec<Captured>)| {
         let patches = vertices.chunk_by(|a, b| a.patch_number == b.patch_number);
         let of_patch = patches.flat_map(|own| {
             let uv: Vec<[f32; 2]> = own.iter().map(|vertex| vertex.uv).collect();
-            let found = surface.triangles(cut, pass, own[0].patch_number, &uv);
+            let found = list.triangles(prepared, pass, own[0].patch_number, &uv);
             let at = |i: u32| own[i as usize].position.map(f32::to_bits);
             found.into_iter().map(move |triangle| triangle.map(at))
         });

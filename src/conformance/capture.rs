@@ -10,7 +10,7 @@ use crate::conformance::Context;
 use crate::conformance::context::Seen;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, SurfaceOptions, Target,
+    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, SurfaceOptions, Target,
     TessellatedSurface, View, Workaround, ring,
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
@@ -42,7 +42,7 @@ impl Bench {
     pub fn new(device: &Device, seen: &Seen) -> Result<Bench> {
         let target = OffscreenTarget::with_encoding(device, SIDE, SIDE, 1, Encoding::Unorm)?;
         // SAFETY: the device is live.
-        let layout = unsafe { Layout::new(device.raw()) }?;
+        let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
         Ok(Bench {
             device: device.clone(),
             layout: Some(layout),
@@ -89,10 +89,10 @@ impl Bench {
         };
         self.device.submit(|cmd| {
             // SAFETY: recording on the device that made the surface, outside of a render pass.
-            unsafe { loaded.surface().cmd_upload(device, cmd) };
+            unsafe { loaded.surface_mut().cmd_upload(device, cmd) };
             Ok(())
         })?;
-        let surface = loaded.surface.as_mut().expect("it was just made");
+        let surface = loaded.surface_mut();
         // SAFETY: the upload has been waited for.
         unsafe { surface.finish_upload(device, &mut self.device.allocator()) };
         Ok(loaded)
@@ -261,30 +261,39 @@ impl Loaded<'_> {
         self.surface.as_ref().expect("there from load to drop")
     }
 
+    fn surface_mut(&mut self) -> &mut TessellatedSurface {
+        self.surface.as_mut().expect("there from load to drop")
+    }
+
     /// What was prepared.
     pub fn prepared(&self) -> &Prepared {
         self.surface().prepared()
     }
 
-    fn write_draws(&mut self, cut: Cut, batches: &[Batch]) -> Result<()> {
+    /// What is drawn at a cut, with what the host decides about it on the device.
+    pub fn draw_list(&mut self, cut: Cut) -> Result<DrawList> {
+        let list = self.surface().draw_list(cut, self.tags.as_ref())?;
         let device = &self.bench.device;
-        let (allocator, tags) = (&mut device.allocator(), self.tags.as_ref());
-        let surface = self.surface.as_mut().expect("there from load to drop");
+        let allocator = &mut device.allocator();
         // SAFETY: device and allocator made the surface; every submission has been waited for.
-        unsafe { surface.write_draws(device.raw(), allocator, cut, tags, batches) }
+        unsafe {
+            self.surface_mut()
+                .write_draws(device.raw(), allocator, &list)?
+        };
+        Ok(list)
     }
 
     /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
     pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
-        let batches = self.surface().batches(cut)?;
-        self.write_draws(cut, &batches)?;
+        let list = self.draw_list(cut)?;
+        let batches: Vec<Batch<'_>> = list.batches().collect();
         let mut all = Frame {
             passes: vec![Vec::new(); self.prepared().passes.len()],
             ..Default::default()
         };
         for batches in self.submissions(&batches) {
             let mut frame = self.draw(cut, fill, batches)?;
-            all.passes[batches[0].pass].append(&mut frame.passes[0]);
+            all.passes[batches[0].pass()].append(&mut frame.passes[0]);
             all.counters.overflows += frame.counters.overflows;
             all.counters.points = all.counters.points.wrapping_add(frame.counters.points);
             all.differing += frame.differing;
@@ -297,17 +306,17 @@ impl Loaded<'_> {
     }
 
     /// Batches of one pass in a row, not too many for the capture.
-    fn submissions<'b>(&self, batches: &'b [Batch]) -> Vec<&'b [Batch]> {
+    fn submissions<'b, 'l>(&self, batches: &'b [Batch<'l>]) -> Vec<&'b [Batch<'l>]> {
         let room = self.options.capture_vertices / 2;
         let mut submissions = Vec::new();
         let (mut start, mut vertices) = (0, 0);
         for (number, batch) in batches.iter().enumerate() {
-            let other = batch.pass != batches[start].pass;
-            if number > start && (other || vertices + batch.vertices > room) {
+            let other = batch.pass() != batches[start].pass();
+            if number > start && (other || vertices + batch.vertices() > room) {
                 submissions.push(&batches[start..number]);
                 (start, vertices) = (number, 0);
             }
-            vertices += batch.vertices;
+            vertices += batch.vertices();
         }
         if !batches.is_empty() {
             submissions.push(&batches[start..]);
@@ -316,7 +325,7 @@ impl Loaded<'_> {
     }
 
     /// Draws batches in one submission. All that is captured counts as one pass's.
-    fn draw(&self, cut: Cut, fill: Fill, batches: &[Batch]) -> Result<Frame> {
+    fn draw(&self, cut: Cut, fill: Fill, batches: &[Batch<'_>]) -> Result<Frame> {
         let Bench { device, target, .. } = self.bench;
         let counts = device.info().support.optional.pipeline_statistics_query;
         let query = counts.then(|| StatisticsQuery::new(device)).transpose()?;
@@ -338,22 +347,22 @@ impl Loaded<'_> {
                     if let Some(query) = &query {
                         query.cmd_begin(cmd);
                     }
-                    self.cmd_draws(cmd, pipelines, cut, batches);
+                    let drawn = self.cmd_draws(cmd, pipelines, batches);
                     if let Some(query) = &query {
                         query.cmd_end(cmd);
                     }
                     target.end(cmd);
                     self.surface().cmd_read_back(raw, cmd);
-                    Ok(())
+                    drawn
                 })
             },
         )?;
-        let expected = batches.iter().map(|batch| batch.vertices).sum();
+        let expected = batches.iter().map(|batch| batch.vertices()).sum();
         let (captured, differing) = self.captured(expected)?;
         self.bench.saw(captured.len());
         Ok(Frame {
             passes: vec![captured],
-            counters: self.surface().counters(),
+            counters: self.surface().counters()?,
             statistics: query.map(|query| query.read()).transpose()?,
             differing,
         })
@@ -365,27 +374,27 @@ impl Loaded<'_> {
         &self,
         cmd: vk::CommandBuffer,
         pipelines: &Pipelines,
-        cut: Cut,
-        batches: &[Batch],
-    ) {
+        batches: &[Batch<'_>],
+    ) -> Result<()> {
         let (device, layout) = (self.bench.device.raw(), self.bench.layout());
-        for (number, batch) in batches.iter().enumerate() {
+        for (number, &batch) in batches.iter().enumerate() {
             // SAFETY: this function's contract; the target's pass allows the barrier. The first batch of a submission may be one that would
             // not wait; after another one it must.
             unsafe {
-                if number > 0 && batch.ring_batch == 0 {
+                if number > 0 && batch.ring_batch() == 0 {
                     ring::cmd_ring_barrier(device, cmd);
                 }
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, &self.view, cut, batch);
+                    .cmd_draw(device, cmd, layout, pipelines, &self.view, batch)?;
             }
         }
+        Ok(())
     }
 
     /// Draws everything at a cut into one picture: the alpha of its pixels, 0 where nothing is.
     pub fn picture(&mut self, cut: Cut) -> Result<Vec<u8>> {
-        let batches = self.surface().batches(cut)?;
-        self.write_draws(cut, &batches)?;
+        let list = self.draw_list(cut)?;
+        let batches: Vec<Batch<'_>> = list.batches().collect();
         let Bench { device, target, .. } = self.bench;
         let (raw, prepared) = (device.raw(), self.prepared());
         self.bench.with_pipelines(
@@ -399,15 +408,15 @@ impl Loaded<'_> {
                 device.submit(|cmd| unsafe {
                     self.surface().cmd_prepare(raw, cmd);
                     target.begin(cmd, [0.0; 4]);
-                    self.cmd_draws(cmd, pipelines, cut, &batches);
+                    let drawn = self.cmd_draws(cmd, pipelines, &batches);
                     target.end(cmd);
                     self.surface().cmd_read_back(raw, cmd);
                     target.cmd_copy_to_host(cmd);
-                    Ok(())
+                    drawn
                 })
             },
         )?;
-        match self.surface().counters().overflows {
+        match self.surface().counters()?.overflows {
             0 => {
                 let alphas = target.read_pixels().into_iter().skip(3).step_by(4);
                 let alphas: Vec<u8> = alphas.collect();
@@ -422,7 +431,7 @@ impl Loaded<'_> {
     /// The captured vertices in order, each once, and how many came again with other bits: an evaluation shader may run more than once
     /// a vertex.
     fn captured(&self, expected: u32) -> Result<(Vec<Captured>, usize)> {
-        let mut vertices = self.surface().captured().to_vec();
+        let mut vertices = self.surface().captured()?.to_vec();
         let room = self.options.capture_vertices;
         if room > expected && vertices.len() >= room as usize {
             return Err(Error::Refused(format!(

@@ -5,7 +5,7 @@ use rustc_hash::FxHashSet;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::gpu::surface::TessellatedSurface;
-use crate::gpu::{Backend, Batch, Cut};
+use crate::gpu::{Backend, Batch};
 use crate::method::Pass;
 
 /// How much of what was predicted has arrived.
@@ -63,44 +63,50 @@ impl TessellatedSurface {
     /// Needs [`count_vertices`](super::SurfaceOptions::count_vertices), or [`capture_vertices`](super::SurfaceOptions::capture_vertices) and
     /// batches of a single pass, each given once. Meaningful when [`cmd_read_back`](Self::cmd_read_back) has been executed, where no patch
     /// overflowed.
-    pub fn arrival(&self, cut: Cut, batches: &[Batch]) -> Arrival {
-        let mut arrival = Arrival::default();
-        for (pass, came) in self.came().into_iter().enumerate() {
-            let mut times = vec![0; self.prepared.passes[pass].patches.len()];
-            for batch in batches.iter().filter(|batch| batch.pass == pass) {
-                let drawn = &mut times[batch.first as usize..batch.end as usize];
-                drawn.iter_mut().for_each(|times| *times += 1);
-            }
-            let drawn = (0u32..).zip(times).filter(|&(_, times)| times > 0);
-            for (patch, times) in drawn {
-                let predicted = times * self.evaluations(cut, pass, patch);
-                arrival.add(predicted, came[patch as usize]);
+    ///
+    /// # Errors
+    /// [`Misuse::NotReadBack`](crate::Misuse::NotReadBack); [`Misuse::OtherSurface`](crate::Misuse::OtherSurface) for batches of another.
+    pub fn arrival<'l>(&self, batches: impl IntoIterator<Item = Batch<'l>>) -> Result<Arrival> {
+        let came = self.came()?;
+        let mut predicted: Vec<Vec<u32>> = came.iter().map(|came| vec![0; came.len()]).collect();
+        for batch in batches {
+            self.check_owner(batch.list())?;
+            for patch in batch.patches() {
+                predicted[batch.pass()][patch as usize] += self.evaluations(batch, patch);
             }
         }
-        arrival
+        let mut arrival = Arrival::default();
+        let patches = predicted.iter().flatten().zip(came.iter().flatten());
+        // Every patch that was drawn has vertices.
+        for (&predicted, &came) in patches.filter(|&(&predicted, _)| predicted > 0) {
+            arrival.add(predicted, came);
+        }
+        Ok(arrival)
     }
 
-    /// How often a patch is evaluated at least, each time that it is drawn.
-    fn evaluations(&self, cut: Cut, pass: usize, patch: u32) -> u32 {
+    /// How often a patch of a batch is evaluated at least, each time that it is drawn.
+    fn evaluations(&self, batch: Batch<'_>, patch: u32) -> u32 {
+        let (list, pass) = (batch.list(), batch.pass());
         match self.options.backend {
             Backend::Geometry if self.options.count_vertices => {
-                let levels = self.levels(cut, pass, patch);
-                self.options.backend.vertices(&levels, cut.spacing)
+                let levels = list.levels(&self.prepared, pass, patch);
+                Backend::Geometry.vertices(&levels, list.cut().spacing)
             }
-            _ => self.vertices(cut, pass, patch),
+            _ => list.vertices(&self.prepared, pass, patch),
         }
     }
 
     /// By pass and patch: vertices counted, or different ones captured. What is captured does not tell its pass, and counts for each.
-    fn came(&self) -> Vec<Vec<u32>> {
+    fn came(&self) -> Result<Vec<Vec<u32>>> {
+        self.counters()?;
         if self.options.count_vertices {
             let counts = self.buffers.counts().map(|counts| {
                 let records: &[abi::Captured] = bytemuck::cast_slice(&counts.bytes()[4..]);
                 records.iter().map(|record| record.patch_number).collect()
             });
-            return counts.collect();
+            return Ok(counts.collect());
         }
-        let captured = self.captured().iter();
+        let captured = self.captured()?.iter();
         let places: FxHashSet<(u32, [u32; 2])> = captured
             .map(|vertex| (vertex.patch_number, vertex.uv.map(f32::to_bits)))
             .collect();
@@ -113,6 +119,6 @@ impl TessellatedSurface {
             }
             came
         };
-        self.prepared.passes.iter().map(of_pass).collect()
+        Ok(self.prepared.passes.iter().map(of_pass).collect())
     }
 }

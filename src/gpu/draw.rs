@@ -4,13 +4,11 @@ use ash::vk;
 use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
-use crate::gpu::backend::Backend;
-use crate::gpu::batches::{Batch, Cut};
+use crate::error::{Error, Misuse, Result};
+use crate::frame::{Backend, Batch, Draw, Slots};
 use crate::gpu::layout::STAGES;
-use crate::gpu::options::Slots;
-use crate::gpu::ring::{RING_ACCESS, cmd_ring_barrier};
-use crate::gpu::surface::TessellatedSurface;
-use crate::gpu::workaround::patches_per_instance;
+use crate::gpu::ring::{RING_ACCESS, cmd_ring_barrier, stages};
+use crate::gpu::surface::{NOT_READ_BACK, TessellatedSurface};
 use crate::gpu::{Layout, Pipelines};
 use crate::method::Displacement;
 use crate::tessellation::Spacing;
@@ -37,28 +35,20 @@ pub struct View {
     pub displacement: Displacement,
 }
 
-/// Some patches, the same number in each instance.
-#[derive(Clone, Copy, Debug, Default)]
-struct Draw {
-    first: u32,
-    patches_per_instance: u32,
-    instances: u32,
-    /// Where patterns are drawn, the segments of an edge of their lattice.
-    segments: u32,
-}
-
 impl TessellatedSurface {
-    /// Records the copy of everything to the device, after what earlier commands of the queue still draw, and before whatever draws next.
+    /// Records the copy of what has changed to the device, after what earlier commands of the queue still draw, and before whatever draws next:
+    /// the first time everything, after [`write_positions`](Self::write_positions) the control vertices and their points, else nothing.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made this surface, outside of a render pass. The surface lives until the commands have been
-    /// executed, and neither [`finish_upload`](Self::finish_upload) nor [`write_positions`](Self::write_positions) is called before.
-    pub unsafe fn cmd_upload(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
-        let Some((staging, copies)) = self.buffers.uploads() else {
+    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, and will be executed. The surface lives until then,
+    /// and neither [`finish_upload`](Self::finish_upload) nor [`write_positions`](Self::write_positions) is called before.
+    pub unsafe fn cmd_upload(&mut self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        let uploads = self.buffers.take_uploads();
+        if uploads.is_empty() {
             return;
-        };
-        let stages = vk::PipelineStageFlags::VERTEX_SHADER
-            | self.options.backend.stages()
+        }
+        let readers = vk::PipelineStageFlags::VERTEX_SHADER
+            | stages(self.options.backend)
             | vk::PipelineStageFlags::FRAGMENT_SHADER
             | vk::PipelineStageFlags::COMPUTE_SHADER;
         let transfer = vk::PipelineStageFlags::TRANSFER;
@@ -67,25 +57,25 @@ impl TessellatedSurface {
             cmd_make_visible(
                 device,
                 cmd,
-                stages | transfer,
+                readers | transfer,
                 transfer,
                 vk::AccessFlags::TRANSFER_WRITE,
             )
         };
-        for (buffer, copy) in copies {
+        for (from, to, copy) in uploads {
             // SAFETY: the copies were made with the buffers' sizes.
-            unsafe { device.cmd_copy_buffer(cmd, staging, buffer, &[copy]) };
+            unsafe { device.cmd_copy_buffer(cmd, from, to, &[copy]) };
         }
         // SAFETY: this function's contract.
-        unsafe { cmd_make_visible(device, cmd, transfer, stages, vk::AccessFlags::SHADER_READ) };
+        unsafe { cmd_make_visible(device, cmd, transfer, readers, vk::AccessFlags::SHADER_READ) };
     }
 
-    /// Gives the staging memory back. Positions cannot be replaced after this.
+    /// Gives the memory back that the tables were staged in. Positions can still be replaced.
     ///
     /// # Safety
     /// `device` and `allocator` made this surface, and the upload has been executed.
     pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut Allocator) {
-        if let Some(staging) = self.buffers.take_staging() {
+        if let Some(staging) = self.buffers.take_staged_tables() {
             // SAFETY: this function's contract.
             unsafe { staging.destroy(device, allocator) };
         }
@@ -100,7 +90,7 @@ impl TessellatedSurface {
     /// surface's earlier frames. The surface lives until the commands have been executed.
     pub unsafe fn cmd_prepare(&self, device: &ash::Device, cmd: vk::CommandBuffer) {
         let transfer = vk::PipelineStageFlags::TRANSFER;
-        let stages = self.options.backend.stages();
+        let stages = stages(self.options.backend);
         // SAFETY: this function's contract; vkCmdFillBuffer is not allowed inside a render pass, hence this function.
         unsafe {
             cmd_make_visible(
@@ -123,17 +113,16 @@ impl TessellatedSurface {
     ///
     /// Binds a pipeline and set 0, and pushes constants from offset 0: an engine binds its own again afterwards.
     ///
+    /// # Errors
+    /// [`Misuse::OtherSurface`], [`Misuse::NotWritten`] and [`Misuse::OtherPipelines`]; nothing has been recorded then.
+    ///
     /// # Safety
     /// `cmd` is recording on `device`, which made this surface, after [`cmd_upload`](Self::cmd_upload) and
     /// [`cmd_prepare`](Self::cmd_prepare) (of this frame), inside subpass 0 of a render pass that is compatible with that of `pipelines`
     /// and whose subpass declares [`ring_dependency`](super::ring::ring_dependency), or, without
-    /// [`barriers`](super::SurfaceOptions::barriers), inside any rendering that suits `pipelines`. Viewport and scissor are set.
-    /// `pipelines` were built for this surface's [`Prepared`](crate::method::Prepared) and the spacing of `cut`, `layout` is the one that
-    /// made them and the surface. `batch` is one of [`batches`](Self::batches) for `cut`, with a level of at most
-    /// [`greatest_level`](super::SurfaceOptions::greatest_level), or its [`again`](Self::again); each is recorded at most once after
-    /// `cmd_prepare`, in their order. [`write_draws`](Self::write_draws) was called for them where it is needed. Surface, pipelines
-    /// and layout live until the commands have been executed.
-    #[allow(clippy::too_many_arguments)]
+    /// [`barriers`](super::SurfaceOptions::barriers), inside any rendering that suits `pipelines`. Viewport and scissor are set. `layout` is the
+    /// one that made `pipelines` and the surface. Each batch of each [round](super::DrawList::round) is recorded at most once after
+    /// `cmd_prepare`, in their order. Surface, pipelines and layout live until the commands have been executed.
     pub unsafe fn cmd_draw(
         &self,
         device: &ash::Device,
@@ -141,169 +130,104 @@ impl TessellatedSurface {
         layout: &Layout,
         pipelines: &Pipelines,
         view: &View,
-        cut: Cut,
-        batch: &Batch,
-    ) {
+        batch: Batch<'_>,
+    ) -> Result<()> {
+        self.check(batch.list())?;
+        let pipeline = pipelines.for_pass(&self.prepared, batch.list(), batch.pass())?;
         let graphics = vk::PipelineBindPoint::GRAPHICS;
-        let sets = [self.sets[batch.pass]];
+        let sets = [self.sets[batch.pass()]];
         // SAFETY: this function's contract.
         unsafe {
-            device.cmd_bind_pipeline(cmd, graphics, pipelines.get(batch.pass));
+            if batch.waits() && self.options.barriers {
+                cmd_ring_barrier(device, cmd);
+            }
+            device.cmd_bind_pipeline(cmd, graphics, pipeline);
             device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
+            if let Some(indices) = self.patterns.buffer() {
+                device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16);
+            }
         }
-        match self.options.backend {
-            // SAFETY: this function's contract.
-            Backend::Tessellator => unsafe {
-                self.cmd_draw_patches(device, cmd, layout, view, cut, batch)
-            },
-            // SAFETY: as above.
-            Backend::Pattern => unsafe {
-                self.cmd_draw_patterns(device, cmd, layout, view, cut, batch)
-            },
-            Backend::Geometry => {
-                let count = batch.end - batch.first;
-                let draw = Draw {
-                    first: batch.first,
-                    patches_per_instance: count,
-                    instances: 1,
-                    ..Draw::default()
+        let mut frame = self.frame(view, batch);
+        for draw in batch.draws() {
+            // SAFETY: as above; the list's patterns are those that were written last.
+            unsafe { self.cmd_draw_one(device, cmd, layout, &mut frame, batch, draw) };
+        }
+        Ok(())
+    }
+
+    /// # Safety
+    /// As [`cmd_draw`](Self::cmd_draw), with pipeline, set and indices bound.
+    unsafe fn cmd_draw_one(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        frame: &mut abi::Frame,
+        batch: Batch<'_>,
+        draw: &Draw,
+    ) {
+        match *draw {
+            Draw::Patches {
+                first,
+                per_instance,
+                instances,
+            } => {
+                (frame.first_patch, frame.patches_per_instance) = (first, per_instance);
+                let vertices = match self.options.backend {
+                    Backend::Geometry => per_instance,
+                    _ => per_instance * self.prepared.passes[batch.pass()].control_points,
                 };
-                let frame = self.frame(view, cut, batch, draw);
-                // SAFETY: as above.
+                // SAFETY: this function's contract.
                 unsafe {
-                    cmd_push(device, cmd, layout, &frame);
-                    device.cmd_draw(cmd, count, 1, 0, 0);
+                    cmd_push(device, cmd, layout, frame);
+                    device.cmd_draw(cmd, vertices, instances, 0, 0);
+                }
+            }
+            Draw::Pattern {
+                pattern,
+                first_instance,
+                instances,
+                segments,
+            } => {
+                frame.segments = segments;
+                let indices = self.patterns.place(pattern);
+                let count = indices.len() as u32;
+                // SAFETY: this function's contract.
+                unsafe {
+                    cmd_push(device, cmd, layout, frame);
+                    let first = indices.start;
+                    device.cmd_draw_indexed(cmd, count, instances, first, 0, first_instance);
                 }
             }
         }
     }
 
-    /// # Safety
-    /// As [`cmd_draw`](Self::cmd_draw), with pipeline and set bound.
-    unsafe fn cmd_draw_patches(
-        &self,
-        device: &ash::Device,
-        cmd: vk::CommandBuffer,
-        layout: &Layout,
-        view: &View,
-        cut: Cut,
-        batch: &Batch,
-    ) {
-        // The first draw of all finds the ring free; every other one waits for the one before. Two draws of a batch have slots apart, but
-        // synchronization is a matter of whole buffers.
-        let mut waits = batch.ring_batch > 0;
-        for draw in self.draws(cut, batch) {
-            if waits && batch.points > 0 && self.options.barriers {
-                // SAFETY: this function's contract.
-                unsafe { cmd_ring_barrier(device, cmd) };
-            }
-            waits = true;
-            let frame = self.frame(view, cut, batch, draw);
-            let control_points = self.prepared.passes[batch.pass].control_points;
-            let vertices = draw.patches_per_instance * control_points;
-            // SAFETY: this function's contract.
-            unsafe {
-                cmd_push(device, cmd, layout, &frame);
-                device.cmd_draw(cmd, vertices, draw.instances, 0, 0);
-            }
-        }
-    }
-
-    /// An instance a patch, those with the same pattern in one draw.
-    ///
-    /// # Safety
-    /// As [`cmd_draw`](Self::cmd_draw), with pipeline and set bound.
-    unsafe fn cmd_draw_patterns(
-        &self,
-        device: &ash::Device,
-        cmd: vk::CommandBuffer,
-        layout: &Layout,
-        view: &View,
-        cut: Cut,
-        batch: &Batch,
-    ) {
-        let Some((indices, draws)) = self.patterns.draws(batch) else {
-            return;
-        };
-        // SAFETY: this function's contract.
-        unsafe { device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16) };
-        for draw in draws {
-            let segments = draw.segments;
-            let of_pattern = Draw {
-                segments,
-                ..Draw::default()
-            };
-            let frame = self.frame(view, cut, batch, of_pattern);
-            let (count, instances) = (draw.indices.len() as u32, draw.instances.len() as u32);
-            let (first, first_instance) = (draw.indices.start, draw.instances.start);
-            // SAFETY: this function's contract.
-            unsafe {
-                cmd_push(device, cmd, layout, &frame);
-                device.cmd_draw_indexed(cmd, count, instances, first, 0, first_instance);
-            }
-        }
-    }
-
-    /// The draws of a batch: full instances, and one of what is left, so that no patch is drawn that is none.
-    fn draws(&self, cut: Cut, batch: &Batch) -> impl Iterator<Item = Draw> + use<> {
-        let count = batch.end - batch.first;
-        let per_instance = self
-            .patches_per_instance(cut, batch)
-            .unwrap_or(count)
-            .min(count);
-        let (instances, rest) = (count / per_instance, count % per_instance);
-        let full = Draw {
-            first: batch.first,
-            patches_per_instance: per_instance,
-            instances,
-            ..Draw::default()
-        };
-        let last = Draw {
-            first: batch.end - rest,
-            patches_per_instance: rest,
-            instances: 1,
-            ..Draw::default()
-        };
-        [full, last]
-            .into_iter()
-            .filter(|draw| draw.patches_per_instance > 0)
-    }
-
-    /// How many patches an instance may hold on this driver; None where nothing bounds it.
-    fn patches_per_instance(&self, cut: Cut, batch: &Batch) -> Option<u32> {
-        let pass = &self.prepared.passes[batch.pass];
-        let greatest =
-            (batch.first..batch.end).map(|patch| cut.levels(pass, patch as usize).greatest());
-        let segments = cut.spacing.segments(greatest.fold(1.0, f32::max));
-        patches_per_instance(&self.workarounds, segments)
-    }
-
-    fn frame(&self, view: &View, cut: Cut, batch: &Batch, draw: Draw) -> abi::Frame {
+    /// The constants of a batch, its draws aside.
+    fn frame(&self, view: &View, batch: Batch<'_>) -> abi::Frame {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-        let cut = self.options.backend.cut(cut);
+        let (options, cut) = (&self.options, batch.list().cut());
+        let max_level = self.prepared.passes[batch.pass()].max_level;
         abi::Frame {
             view_projection: view.clip_from_model,
             eye: view.eye,
             shading: view.shading,
             // As the CPU has it, whatever the pass: control shaders compute the points that this level needs.
-            level: cut
-                .spacing
-                .clamp(cut.level, self.prepared.passes[batch.pass].max_level),
+            level: cut.spacing.clamp(cut.level, max_level),
             flags: flag(
                 cut.spacing == Spacing::FractionalEven,
                 abi::FRAME_FRACTIONAL_EVEN,
-            ) | flag(self.options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
-                | flag(self.options.capture_vertices > 0, abi::FRAME_CAPTURE)
-                | flag(self.options.amplify_cracks, abi::FRAME_PARITY)
-                | flag(!self.tagged.is_empty(), abi::FRAME_ADAPTIVE)
-                | flag(self.options.count_vertices, abi::FRAME_COUNT),
-            first_patch: draw.first,
-            end_patch: batch.end,
-            patches_per_instance: draw.patches_per_instance,
-            ring_points: (self.options.ring_bytes / 16).min(u64::from(u32::MAX / 2)) as u32,
-            counter: abi::COUNTER_BATCHES + batch.ring_batch,
-            capture_vertices: self.options.capture_vertices,
-            segments: draw.segments,
+            ) | flag(options.slots == Slots::Host, abi::FRAME_HOST_SLOTS)
+                | flag(options.capture_vertices > 0, abi::FRAME_CAPTURE)
+                | flag(options.amplify_cracks, abi::FRAME_PARITY)
+                | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
+                | flag(options.count_vertices, abi::FRAME_COUNT),
+            first_patch: batch.patches().start,
+            end_patch: batch.patches().end,
+            patches_per_instance: 0,
+            ring_points: options.ring_points(),
+            counter: abi::COUNTER_BATCHES + batch.ring_batch(),
+            capture_vertices: options.capture_vertices,
+            segments: 0,
             displacement: [view.displacement.height, view.displacement.frequency],
         }
     }
@@ -319,7 +243,7 @@ impl TessellatedSurface {
             vk::PipelineStageFlags::TRANSFER,
             vk::PipelineStageFlags::HOST,
         );
-        let stages = self.options.backend.stages();
+        let stages = stages(self.options.backend);
         // SAFETY: this function's contract.
         unsafe {
             cmd_make_visible(
@@ -346,20 +270,30 @@ impl TessellatedSurface {
     }
 
     /// What was counted. Meaningful when [`cmd_read_back`](Self::cmd_read_back) has been executed.
-    pub fn counters(&self) -> Counters {
-        let counted: &[u32] = bytemuck::cast_slice(self.buffers.counted().bytes());
-        Counters {
+    ///
+    /// # Errors
+    /// [`Misuse::NotReadBack`] as long as none has been.
+    pub fn counters(&self) -> Result<Counters> {
+        let counted: [u32; 2] = bytemuck::pod_read_unaligned(self.buffers.counted().bytes());
+        if counted == NOT_READ_BACK {
+            return Err(Error::Misuse(Misuse::NotReadBack));
+        }
+        Ok(Counters {
             overflows: counted[abi::COUNTER_OVERFLOWS as usize],
             points: counted[abi::COUNTER_POINTS as usize],
-        }
+        })
     }
 
     /// What was captured since [`cmd_prepare`](Self::cmd_prepare), in no order, and possibly some vertices more than once. Meaningful
     /// when [`cmd_read_back`](Self::cmd_read_back) has been executed.
-    pub fn captured(&self) -> &[abi::Captured] {
+    ///
+    /// # Errors
+    /// [`Misuse::NotReadBack`] as long as none has been.
+    pub fn captured(&self) -> Result<&[abi::Captured]> {
+        self.counters()?;
         let (count, captured) = self.buffers.capture().bytes().split_at(4);
         let count = bytemuck::pod_read_unaligned::<u32>(count).min(self.options.capture_vertices);
-        &bytemuck::cast_slice(captured)[..count as usize]
+        Ok(&bytemuck::cast_slice(captured)[..count as usize])
     }
 }
 

@@ -5,7 +5,11 @@
 
 use ash::{khr, vk};
 
-use crate::gpu::layout::BINDINGS;
+use crate::abi;
+use crate::error::{Error, Misuse, Result};
+
+/// How many bindings set 0 has.
+pub(crate) const BINDINGS: u32 = abi::BINDING_TABLES + abi::TABLES;
 
 /// Features that we use where they exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,6 +38,30 @@ pub struct ExtraFeatures {
     pub vulkan_memory_model: bool,
 }
 
+/// The proof that a device was created with the features that our shaders need, and which of the optional ones it has.
+///
+/// Vulkan does not tell what a device was created with, so whoever creates it shows the structs: [`FeatureChain::enabled`], or
+/// [`Support::enabled`] for an engine's own. A [`Layout`](super::Layout) wants it, and so does all that is made with one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Enabled {
+    pub(super) fill_mode_non_solid: bool,
+    pub(super) geometry_shader: bool,
+    pub(super) max_storage_buffer_range: u32,
+}
+
+impl Enabled {
+    /// # Errors
+    /// [`Misuse::Features`] when the optional feature `name` is wanted and was not switched on.
+    pub(super) fn require(wanted: bool, enabled: bool, name: &str) -> Result<()> {
+        if enabled || !wanted {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::Features {
+            lacking: vec![name.into()],
+        }))
+    }
+}
+
 /// How a physical device meets what we need.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Support {
@@ -49,6 +77,8 @@ pub struct Support {
     pub scalar_block_layout: bool,
     /// Storage buffers that a stage may see (`maxPerStageDescriptorStorageBuffers`): set 0 has 17, and devices need not have more than 4.
     pub storage_buffers: u32,
+    /// Bytes that a shader sees of a storage buffer (`maxStorageBufferRange`): no table, and no ring, is larger.
+    pub max_storage_buffer_range: u32,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
     /// Whether [`ExtraFeatures::vulkan_memory_model`] can be asked for.
@@ -71,6 +101,7 @@ impl Support {
         let mut support = Support {
             api_version,
             storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
+            max_storage_buffer_range: properties.limits.max_storage_buffer_range,
             graphics_family: queues
                 .iter()
                 .position(|family| {
@@ -118,6 +149,34 @@ impl Support {
         ];
         let lacking = needs.into_iter().filter(|(met, _)| !met);
         lacking.map(|(_, words)| words).collect()
+    }
+
+    /// That a device of this kind was created with what our shaders need, as these structs of its creation show. A feature that was switched on
+    /// in another struct (`VkPhysicalDeviceScalarBlockLayoutFeatures`) is shown in `vulkan12` all the same.
+    ///
+    /// # Errors
+    /// [`Misuse::Features`] names what is lacking.
+    pub fn enabled(
+        &self,
+        core: &vk::PhysicalDeviceFeatures,
+        vulkan12: &vk::PhysicalDeviceVulkan12Features<'_>,
+    ) -> Result<Enabled> {
+        let on = |feature: vk::Bool32| feature != 0;
+        let shown = Support {
+            tessellation_shader: on(core.tessellation_shader),
+            vertex_pipeline_stores_and_atomics: on(core.vertex_pipeline_stores_and_atomics),
+            scalar_block_layout: on(vulkan12.scalar_block_layout),
+            ..*self
+        };
+        let lacking = shown.missing();
+        if !lacking.is_empty() {
+            return Err(Error::Misuse(Misuse::Features { lacking }));
+        }
+        Ok(Enabled {
+            fill_mode_non_solid: on(core.fill_mode_non_solid),
+            geometry_shader: on(core.geometry_shader),
+            max_storage_buffer_range: self.max_storage_buffer_range,
+        })
     }
 
     /// The device extensions to enable for the features of this struct.
@@ -190,6 +249,7 @@ impl Support {
 
 /// The feature structs to chain when a device is created, for those who have none of their own.
 pub struct FeatureChain {
+    support: Support,
     core: vk::PhysicalDeviceFeatures2<'static>,
     vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,
     maintenance4: Option<vk::PhysicalDeviceMaintenance4Features<'static>>,
@@ -203,6 +263,7 @@ impl FeatureChain {
         support.require(&mut core.features, &mut vulkan12);
         let maintenance4 = vk::PhysicalDeviceMaintenance4Features::default().maintenance4(true);
         FeatureChain {
+            support: *support,
             core,
             vulkan12,
             maintenance4: support.optional.maintenance4.then_some(maintenance4),
@@ -216,6 +277,14 @@ impl FeatureChain {
         self.vulkan12.vulkan_memory_model |= model;
         self.vulkan12.vulkan_memory_model_device_scope |= model;
         self
+    }
+
+    /// That a device which is created with this chain has what our shaders need.
+    ///
+    /// # Errors
+    /// As [`Support::enabled`].
+    pub fn enabled(&self) -> Result<Enabled> {
+        self.support.enabled(&self.core.features, &self.vulkan12)
     }
 
     /// Chains the structs to `info`.
@@ -305,6 +374,21 @@ mod tests {
         assert_eq!(core.fill_mode_non_solid, 0);
         assert_eq!(vulkan12.timeline_semaphore, 1);
         assert_eq!(vulkan12.scalar_block_layout, 1);
+    }
+
+    #[test]
+    fn a_device_without_the_features_is_no_device_of_ours() {
+        let support = good();
+        let enabled = FeatureChain::new(&support).enabled();
+        assert!(!enabled.expect("all is switched on").geometry_shader);
+        let core = vk::PhysicalDeviceFeatures::default().tessellation_shader(true);
+        let vulkan12 = vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true);
+        let Err(Error::Misuse(Misuse::Features { lacking })) = support.enabled(&core, &vulkan12)
+        else {
+            panic!("stores and atomics are off");
+        };
+        assert_eq!(lacking.len(), 1);
+        assert!(lacking[0].contains("vertexPipelineStoresAndAtomics"));
     }
 
     #[test]

@@ -5,9 +5,7 @@ use ash::vk;
 use crate::abi;
 use crate::error::Result;
 use crate::gpu::failed;
-
-/// How many bindings set 0 has.
-pub(crate) const BINDINGS: u32 = abi::BINDING_TABLES + abi::TABLES;
+use crate::gpu::features::{BINDINGS, Enabled};
 
 /// Stages that see set 0 and the push constants.
 pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -24,14 +22,15 @@ pub(crate) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 pub struct Layout {
     set: vk::DescriptorSetLayout,
     pipeline: vk::PipelineLayout,
+    enabled: Enabled,
 }
 
 impl Layout {
     /// Makes the layouts: storage buffers at every binding of `abi`, and an [`abi::Frame`] of push constants.
     ///
     /// # Safety
-    /// `device` is live.
-    pub unsafe fn new(device: &ash::Device) -> Result<Layout> {
+    /// `device` is live, and was created with what `enabled` is the proof of.
+    pub unsafe fn new(device: &ash::Device, enabled: Enabled) -> Result<Layout> {
         let bindings: Vec<vk::DescriptorSetLayoutBinding> = (0..BINDINGS)
             .map(|binding| {
                 vk::DescriptorSetLayoutBinding::default()
@@ -52,7 +51,11 @@ impl Layout {
             .push_constant_ranges(&constants);
         // SAFETY: as above; `set` was just made from this device.
         match unsafe { device.create_pipeline_layout(&info, None) } {
-            Ok(pipeline) => Ok(Layout { set, pipeline }),
+            Ok(pipeline) => Ok(Layout {
+                set,
+                pipeline,
+                enabled,
+            }),
             Err(code) => {
                 // SAFETY: `set` is ours and nothing uses it.
                 unsafe { device.destroy_descriptor_set_layout(set, None) };
@@ -90,6 +93,11 @@ impl Layout {
         vk::PushConstantRange::default()
             .stage_flags(STAGES)
             .size(size_of::<abi::Frame>() as u32)
+    }
+
+    /// What the device can do.
+    pub(super) fn enabled(&self) -> Enabled {
+        self.enabled
     }
 
     /// The layout of set 0.

@@ -3,33 +3,29 @@
 //! The engine owns instance, device, queue and allocator; nothing here submits or waits.
 
 mod arrival;
-mod backend;
-mod batches;
 pub mod buffer;
 mod call;
 mod draw;
 pub mod driver;
 pub mod features;
 mod layout;
-mod options;
 mod patterns;
 mod pipeline;
 mod points;
 pub mod ring;
 pub mod shaders;
+mod staging;
 mod surface;
 pub mod workaround;
 
+pub use crate::frame::{Backend, Batch, Cut, DrawList, Slots, SurfaceOptions};
 pub use arrival::Arrival;
-pub use backend::Backend;
-pub use batches::{Batch, Cut};
 pub use buffer::Buffer;
 pub(crate) use call::failed;
 pub use draw::{Counters, View};
 pub use driver::{Driver, Version};
-pub use features::{ExtraFeatures, FeatureChain, OptionalFeatures, Support};
+pub use features::{Enabled, ExtraFeatures, FeatureChain, OptionalFeatures, Support};
 pub use layout::Layout;
-pub use options::{Slots, SurfaceOptions};
 pub use pipeline::{Fill, Pipelines, Target};
 pub use points::PointPipeline;
 pub use surface::TessellatedSurface;

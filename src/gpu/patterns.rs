@@ -1,4 +1,4 @@
-//! Refinement patterns on the device: which patch is drawn with which, and the indices of all that have been needed so far.
+//! Refinement patterns on the device: the indices of all that have been needed so far.
 
 use std::ops::Range;
 
@@ -9,22 +9,9 @@ use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::Result;
-use crate::gpu::{Batch, Buffer};
-use crate::tessellation::{Domain, Levels, lattice_segments, pattern};
-
-/// Instances that are drawn with one pattern.
-#[derive(Clone, Debug)]
-pub(super) struct PatternDraw {
-    /// Its indices.
-    pub indices: Range<u32>,
-    /// The instances, in the pass's list.
-    pub instances: Range<u32>,
-    /// The segments of an edge of its lattice.
-    pub segments: u32,
-}
-
-/// What a pattern depends on: the shape, and the levels of the edges.
-type Key = (Domain, [u32; 4]);
+use crate::frame::{Key, key};
+use crate::gpu::Buffer;
+use crate::tessellation::{Levels, pattern};
 
 /// The patterns of a surface.
 #[derive(Debug, Default)]
@@ -32,57 +19,22 @@ pub(super) struct Patterns {
     known: FxHashMap<Key, Range<u32>>,
     indices: Vec<u16>,
     buffer: Option<Buffer>,
-    /// By pass and first patch of a batch.
-    draws: FxHashMap<(usize, u32), Vec<PatternDraw>>,
+    /// Where the patterns of the draw list are that was written last.
+    places: Vec<Range<u32>>,
 }
 
 impl Patterns {
-    /// Forgets who is drawn with which pattern; the patterns stay.
-    pub fn clear(&mut self) {
-        self.draws.clear();
-    }
-
-    /// Sorts the patches of a batch by the patterns that their levels ask for, and returns them in the order of instances.
-    pub fn arrange(&mut self, batch: &Batch, levels: impl Fn(u32) -> Levels) -> Vec<u32> {
-        let mut patches: Vec<(Key, Levels, u32)> = (batch.first..batch.end)
-            .map(|patch| {
-                let levels = levels(patch);
-                (key(&levels), levels, patch)
-            })
-            .collect();
-        patches.sort_by_key(|&((_, edges), _, patch)| (edges, patch));
-        let mut draws = Vec::new();
-        let mut first = batch.first;
-        for run in patches.chunk_by(|a, b| a.0 == b.0) {
-            let end = first + run.len() as u32;
-            draws.push(PatternDraw {
-                indices: self.provide(&run[0].1),
-                instances: first..end,
-                segments: lattice_segments(&run[0].1),
-            });
-            first = end;
-        }
-        self.draws.insert((batch.pass, batch.first), draws);
-        patches.into_iter().map(|(_, _, patch)| patch).collect()
-    }
-
-    /// Where the indices of a pattern are; they are made when it is new.
-    fn provide(&mut self, levels: &Levels) -> Range<u32> {
-        let indices = &mut self.indices;
-        let made = self.known.entry(key(levels)).or_insert_with(|| {
-            let start = indices.len() as u32;
-            let places = pattern(levels).into_iter().flatten();
-            indices.extend(places.map(|[i, j]| (i | j << abi::PATTERN_SHIFT) as u16));
-            start..indices.len() as u32
-        });
-        made.clone()
-    }
-
-    /// Brings all indices to the device, into a larger buffer if need be.
+    /// Brings the patterns of a draw list to the device, into a larger buffer if need be.
     ///
     /// # Safety
     /// `device` and `allocator` are those of the surface, and no submitted command still uses the patterns.
-    pub unsafe fn write(&mut self, device: &ash::Device, allocator: &mut Allocator) -> Result<()> {
+    pub unsafe fn write(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut Allocator,
+        patterns: &[Levels],
+    ) -> Result<()> {
+        self.places = patterns.iter().map(|levels| self.provide(levels)).collect();
         let bytes: &[u8] = bytemuck::cast_slice(&self.indices);
         let needed = bytes.len() as u64;
         if self
@@ -107,10 +59,26 @@ impl Patterns {
         Ok(())
     }
 
-    /// The buffer of indices, and what a batch draws of it; nothing when it has not been arranged.
-    pub fn draws(&self, batch: &Batch) -> Option<(vk::Buffer, &[PatternDraw])> {
-        let draws = self.draws.get(&(batch.pass, batch.first))?;
-        Some((self.buffer.as_ref()?.raw(), draws))
+    /// Where the indices of a pattern are; they are made when it is new.
+    fn provide(&mut self, levels: &Levels) -> Range<u32> {
+        let indices = &mut self.indices;
+        let made = self.known.entry(key(levels)).or_insert_with(|| {
+            let start = indices.len() as u32;
+            let places = pattern(levels).into_iter().flatten();
+            indices.extend(places.map(|[i, j]| (i | j << abi::PATTERN_SHIFT) as u16));
+            start..indices.len() as u32
+        });
+        made.clone()
+    }
+
+    /// The buffer of indices, if anything has been written.
+    pub fn buffer(&self) -> Option<vk::Buffer> {
+        self.buffer.as_ref().map(Buffer::raw)
+    }
+
+    /// Where the indices of a pattern of the draw list are that was written last.
+    pub fn place(&self, pattern: u32) -> Range<u32> {
+        self.places[pattern as usize].clone()
     }
 
     /// Destroys the buffer.
@@ -122,52 +90,5 @@ impl Patterns {
             // SAFETY: this function's contract.
             unsafe { buffer.destroy(device, allocator) };
         }
-    }
-}
-
-fn key(levels: &Levels) -> Key {
-    (levels.domain, levels.edges.map(|level| level as u32))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn triangle(edges: [f32; 3]) -> Levels {
-        let [a, b, c] = edges;
-        Levels {
-            domain: Domain::Triangles,
-            edges: [a, b, c, c],
-            inside: a.max(b).max(c),
-        }
-    }
-
-    #[test]
-    fn patches_with_the_same_tags_are_instances_of_one_pattern_which_is_made_once() {
-        let edges = [
-            [4.0, 4.0, 4.0],
-            [4.0, 2.0, 4.0],
-            [4.0, 4.0, 4.0],
-            [4.0, 2.0, 4.0],
-        ];
-        let mut patterns = Patterns::default();
-        let batch = Batch {
-            pass: 0,
-            first: 0,
-            end: 4,
-            points: 0,
-            vertices: 0,
-            ring_batch: 0,
-        };
-        let instances = patterns.arrange(&batch, |patch| triangle(edges[patch as usize]));
-        assert_eq!(instances, [1, 3, 0, 2]);
-        let draws = patterns.draws[&(0, 0)].clone();
-        let ranges: Vec<_> = draws.iter().map(|draw| draw.instances.clone()).collect();
-        assert_eq!(ranges, [0..2, 2..4]);
-        assert_eq!(draws[1].indices.len(), 3 * 16);
-        let made = patterns.indices.len();
-        patterns.clear();
-        patterns.arrange(&batch, |patch| triangle(edges[patch as usize]));
-        assert_eq!(patterns.indices.len(), made);
     }
 }

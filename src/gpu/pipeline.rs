@@ -2,8 +2,8 @@
 
 use ash::vk;
 
-use crate::error::{Error, Result};
-use crate::gpu::{Backend, Layout, failed, shaders};
+use crate::error::{Error, Misuse, Result};
+use crate::gpu::{Backend, DrawList, Enabled, Layout, failed, shaders};
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
 
@@ -40,15 +40,27 @@ pub enum Fill {
 #[derive(Debug)]
 pub struct Pipelines {
     pipelines: Vec<vk::Pipeline>,
+    /// What they draw, where it is known.
+    made_for: Option<MadeFor>,
+}
+
+/// What pipelines draw.
+#[derive(Debug)]
+struct MadeFor {
+    shaders: Vec<&'static str>,
+    backend: Backend,
+    spacing: Spacing,
 }
 
 impl Pipelines {
     /// Builds the pipelines of every pass. Viewport and scissor are dynamic states. Cache and render pass may go afterwards: any compatible
     /// render pass will do for drawing.
     ///
+    /// # Errors
+    /// [`Misuse::Features`] when the device was created without `fillModeNonSolid` or `geometryShader` and these are needed; Vulkan's own.
+    ///
     /// # Safety
-    /// `device` is live and has the features that [`Support`](super::Support) asks for, with [`Fill::Lines`] also `fillModeNonSolid`, with
-    /// [`Backend::Geometry`] also `geometryShader`; `layout`, `cache` (or null) and `target` are of this device.
+    /// `device` is live; `layout`, `cache` (or null) and `target` are of this device.
     #[allow(clippy::too_many_arguments)]
     pub unsafe fn new(
         device: &ash::Device,
@@ -60,8 +72,17 @@ impl Pipelines {
         spacing: Spacing,
         fill: Fill,
     ) -> Result<Pipelines> {
+        let enabled = layout.enabled();
+        let (lines, geometry) = (fill == Fill::Lines, backend == Backend::Geometry);
+        Enabled::require(lines, enabled.fill_mode_non_solid, "fillModeNonSolid")?;
+        Enabled::require(geometry, enabled.geometry_shader, "geometryShader")?;
         let mut pipelines = Pipelines {
             pipelines: Vec::new(),
+            made_for: Some(MadeFor {
+                shaders: prepared.passes.iter().map(|pass| pass.shader).collect(),
+                backend,
+                spacing,
+            }),
         };
         for pass in &prepared.passes {
             let modules = modules(pass.shader, backend, spacing, fill)?;
@@ -94,7 +115,33 @@ impl Pipelines {
     /// compatible with [`Layout::pipeline`] for set 0 and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
     /// `abi::Frame` and set 0 as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
     pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>) -> Pipelines {
-        Pipelines { pipelines }
+        Pipelines {
+            pipelines,
+            made_for: None,
+        }
+    }
+
+    /// The pipeline for a pass of a draw list.
+    ///
+    /// # Errors
+    /// [`Misuse::OtherPipelines`] when they were made for something else.
+    pub(super) fn for_pass(
+        &self,
+        prepared: &Prepared,
+        list: &DrawList,
+        pass: usize,
+    ) -> Result<vk::Pipeline> {
+        let fits = self.made_for.as_ref().is_none_or(|own| {
+            let (backend, spacing) = (list.options().backend, list.cut().spacing);
+            let shaders = prepared.passes.iter().map(|pass| pass.shader);
+            own.backend == backend
+                && (own.spacing == spacing || backend != Backend::Tessellator)
+                && shaders.eq(own.shaders.iter().copied())
+        });
+        let pipeline = self.pipelines.get(pass).filter(|_| fits);
+        pipeline
+            .copied()
+            .ok_or(Error::Misuse(Misuse::OtherPipelines))
     }
 
     /// The pipeline of a pass.

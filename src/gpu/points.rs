@@ -5,6 +5,7 @@ use ash::vk;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::gpu::layout::STAGES;
+use crate::gpu::ring::stages;
 use crate::gpu::{Layout, TessellatedSurface, failed, shaders};
 
 /// The pipeline that computes points, the same for all methods.
@@ -82,7 +83,7 @@ impl TessellatedSurface {
         let Some(&set) = self.sets.first() else {
             return;
         };
-        let readers = vk::PipelineStageFlags::VERTEX_SHADER | self.options.backend.stages();
+        let readers = vk::PipelineStageFlags::VERTEX_SHADER | stages(self.options.backend);
         let mut before = readers | compute;
         for step in self
             .prepared

@@ -4,33 +4,29 @@ use ash::vk;
 use glam::Vec3;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocator;
-use rustc_hash::FxHashMap;
 
 use crate::abi;
-use crate::error::{Error, Result};
-use crate::gpu::backend::Backend;
-use crate::gpu::batches::{Batch, Cut, batches};
-use crate::gpu::layout::BINDINGS;
-use crate::gpu::options::SurfaceOptions;
+use crate::error::{Error, Misuse, Result};
+use crate::frame::{Backend, Cut, DrawList, SurfaceOptions};
+use crate::gpu::features::BINDINGS;
 use crate::gpu::patterns::Patterns;
-use crate::gpu::workaround::Workaround;
-use crate::gpu::{Buffer, Layout, failed};
+use crate::gpu::staging::Staging;
+use crate::gpu::workaround::{Workaround, instance_vertices};
+use crate::gpu::{Buffer, Enabled, Layout, failed};
 use crate::mesh::Model;
 use crate::method::{Controls, DepthTags, Pass, Prepared};
-use crate::tessellation::{
-    Levels, Spacing, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
-};
 
 /// A prepared model in buffers of the device. It borrows nothing; the owner calls [`TessellatedSurface::destroy`].
 #[derive(Debug)]
 pub struct TessellatedSurface {
     pub(super) prepared: Prepared,
     pub(super) options: SurfaceOptions,
-    pub(super) workarounds: Vec<&'static Workaround>,
+    /// Tessellated vertices an instance, where the driver bounds them.
+    instance_vertices: Option<u32>,
     pub(super) buffers: Buffers,
     pub(super) patterns: Patterns,
-    /// By pass and patch, where depth tags are given; else empty.
-    pub(super) tagged: Vec<Vec<Levels>>,
+    /// The number of the draw list whose decisions are on the device.
+    written: Option<u64>,
     pub(super) sets: Vec<vk::DescriptorSet>,
     pool: vk::DescriptorPool,
 }
@@ -39,9 +35,10 @@ pub struct TessellatedSurface {
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
     all: Vec<Buffer>,
-    staged: Vec<u8>,
-    copies: Vec<(usize, vk::BufferCopy)>,
-    staging: Option<usize>,
+    /// What topology decides, which is copied once.
+    tables: Staging,
+    /// Positions and what is computed from them, which may be replaced.
+    pose: Staging,
     positions: usize,
     points: usize,
     point_rows: usize,
@@ -56,6 +53,9 @@ pub(super) struct Buffers {
     passes: Vec<Vec<usize>>,
 }
 
+/// What stands in place of counts that no device has written: more overflows than there are patches.
+pub(super) const NOT_READ_BACK: [u32; 2] = [u32::MAX; 2];
+
 /// Where a pass's draws stand in [`Buffers::passes`].
 const DRAWS: usize = 3;
 /// Where a pass's instances stand.
@@ -64,13 +64,14 @@ const INSTANCES: usize = 4;
 impl TessellatedSurface {
     /// Makes the buffers and descriptor sets of a prepared model. Record [`cmd_upload`](Self::cmd_upload) before anything else.
     ///
+    /// `model` has the mesh that `prepared` was made of, perhaps deformed.
+    ///
     /// # Errors
-    /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch at `greatest_level`, or the backend cannot draw it;
-    /// Vulkan's own.
+    /// [`Misuse`] when the ring cannot hold a single patch at `greatest_level`, the options do not go together or the backend cannot draw what was
+    /// prepared, that is of another mesh, or a buffer is larger than shaders can see; Vulkan's own.
     ///
     /// # Safety
-    /// `device` is live and has the features that [`Support`](super::Support) asks for, with [`Backend::Geometry`] also `geometryShader`; `allocator` and `layout` were made for it. All
-    /// commands of this surface go to queues of one family: the buffers are `EXCLUSIVE`.
+    /// `device` is live; `allocator` and `layout` were made for it. All commands of this surface go to queues of one family: the buffers are `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
         allocator: &mut Allocator,
@@ -80,22 +81,20 @@ impl TessellatedSurface {
         workarounds: &[&'static Workaround],
         options: SurfaceOptions,
     ) -> Result<TessellatedSurface> {
-        options.backend.check(&prepared, options.greatest_level)?;
-        if options.count_vertices && options.capture_vertices > 0 {
-            return Err(Error::Option {
-                option: "count_vertices",
-                problem: "vertices are captured already".into(),
-                remedy: "count them or capture them".into(),
-            });
+        let geometry = options.backend == Backend::Geometry;
+        Enabled::require(geometry, layout.enabled().geometry_shader, "geometryShader")?;
+        if !prepared.is_of(model) {
+            return Err(Error::Misuse(Misuse::OtherMesh));
         }
-        let counters = counter_count(&prepared, options)?;
+        let instance_vertices = instance_vertices(workarounds);
+        let counters = DrawList::ring_counters(&prepared, &options, instance_vertices)?;
         let mut surface = TessellatedSurface {
             prepared,
             options,
-            workarounds: workarounds.to_vec(),
+            instance_vertices,
             buffers: Buffers::default(),
             patterns: Patterns::default(),
-            tagged: Vec::new(),
+            written: None,
             sets: Vec::new(),
             pool: vk::DescriptorPool::null(),
         };
@@ -125,6 +124,7 @@ impl TessellatedSurface {
             device,
             allocator,
             buffers: &mut self.buffers,
+            limit: u64::from(layout.enabled().max_storage_buffer_range),
         };
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let copied = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
@@ -133,12 +133,13 @@ impl TessellatedSurface {
         let positions: Vec<[f32; 3]> = vertices.iter().map(|v| v.to_array()).collect();
         let capture =
             4 + u64::from(self.options.capture_vertices) * size_of::<abi::Captured>() as u64;
+        let counters = 4 * (u64::from(abi::COUNTER_BATCHES) + counters);
         // SAFETY: this function's contract.
         unsafe {
             maker.buffers.positions =
-                maker.table("control vertices", bytemuck::cast_slice(&positions))?;
+                maker.pose("control vertices", bytemuck::cast_slice(&positions))?;
             let rules = &self.prepared.points;
-            maker.buffers.points = maker.table("points", bytemuck::cast_slice(&points))?;
+            maker.buffers.points = maker.pose("points", bytemuck::cast_slice(&points))?;
             maker.buffers.point_rows =
                 maker.table("rows of points", bytemuck::cast_slice(&rules.rows))?;
             maker.buffers.point_terms =
@@ -146,7 +147,7 @@ impl TessellatedSurface {
             maker.buffers.ring =
                 maker.buffer("scratch ring", self.options.ring_bytes, storage, local)?;
             maker.buffers.counters =
-                maker.buffer("ring counters", 4 * counters, storage | copied, local)?;
+                maker.buffer("ring counters", counters, storage | copied, local)?;
             maker.buffers.counted = maker.buffer("counted", 8, copied, MemoryLocation::GpuToCpu)?;
             maker.buffers.capture = maker.buffer(
                 "capture",
@@ -166,6 +167,12 @@ impl TessellatedSurface {
                 maker.buffers.passes.push(tables);
             }
             maker.stage()?;
+            // Until something is read back there are no counts, and nothing is captured.
+            let Buffers {
+                counted, capture, ..
+            } = *maker.buffers;
+            maker.buffers.all[counted].write(0, bytemuck::bytes_of(&NOT_READ_BACK));
+            maker.buffers.all[capture].write(0, &[0; 4]);
             self.describe(device, layout)
         }
     }
@@ -230,54 +237,58 @@ impl TessellatedSurface {
         self.options
     }
 
-    /// The batches that a cut needs: each within the ring, and within the capture if there is one.
+    /// Decides what is drawn at a cut, with a depth for each control vertex if there are tags; see [`DrawList::new`].
     ///
     /// # Errors
-    /// [`Error::Option`](crate::Error::Option) when the ring cannot hold a single patch, or the level is beyond the backend.
-    pub fn batches(&self, cut: Cut) -> Result<Vec<Batch>> {
-        self.options.backend.check(&self.prepared, cut.level)?;
-        batches(&self.prepared, cut, self.options.bounds())
+    /// As there: a level that is none or above the greatest, tags that are none.
+    pub fn draw_list(&self, cut: Cut, tags: Option<&DepthTags>) -> Result<DrawList> {
+        let (prepared, vertices) = (&self.prepared, self.instance_vertices);
+        DrawList::new(prepared, &self.options, vertices, cut, tags)
     }
 
-    /// The batch for the next round: drawn in the same frame once more, for lines over a surface or a second view.
-    pub fn again(&self, batch: &Batch) -> Batch {
-        let counters = self.buffers.counters().size() / 4 - u64::from(abi::COUNTER_BATCHES);
-        let round = (counters / u64::from(self.options.rounds)) as u32;
-        Batch {
-            ring_batch: batch.ring_batch + round,
-            ..*batch
+    /// Whether a list may be drawn now.
+    ///
+    /// # Errors
+    /// [`Misuse::OtherSurface`] and [`Misuse::NotWritten`].
+    pub(super) fn check(&self, list: &DrawList) -> Result<()> {
+        self.check_owner(list)?;
+        if list.has_decisions() && self.written != Some(list.number()) {
+            return Err(Error::Misuse(Misuse::NotWritten));
         }
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`Misuse::OtherSurface`] for the list of another surface.
+    pub(super) fn check_owner(&self, list: &DrawList) -> Result<()> {
+        if list.is_for(&self.prepared, &self.options, self.instance_vertices) {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::OtherSurface))
     }
 
     /// Replaces the control vertices, by positions relative to the model's centre, and what is computed from them; they arrive with the next
-    /// [`cmd_upload`](Self::cmd_upload).
+    /// [`cmd_upload`](Self::cmd_upload), which then copies nothing else.
     ///
     /// The staging memory is written at once: no submitted [`cmd_upload`](Self::cmd_upload) may still read it. An engine that computes
     /// positions on the device writes the [`position_buffer`](Self::position_buffer) instead, and records
     /// [`cmd_points`](Self::cmd_points).
     ///
-    /// # Panics
-    /// When the number of positions is not that of the model, or after [`finish_upload`](Self::finish_upload).
-    pub fn write_positions(&mut self, positions: &[[f32; 3]]) {
+    /// # Errors
+    /// [`Misuse::Count`] when the number of positions is not that of the model.
+    pub fn write_positions(&mut self, positions: &[[f32; 3]]) -> Result<()> {
+        self.prepared.check_count("positions", positions.len())?;
         let vertices: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
         let points = self.prepared.points.compute(&vertices);
-        self.write_staged(self.buffers.positions, bytemuck::cast_slice(positions));
-        self.write_staged(self.buffers.points, bytemuck::cast_slice(&points));
-    }
-
-    /// Writes what will be copied to a buffer.
-    fn write_staged(&mut self, buffer: usize, bytes: &[u8]) {
-        let mut copies = self.buffers.copies.iter();
-        let copy = copies.find(|(number, _)| *number == buffer);
-        let copy = copy.expect("every table is copied").1;
-        assert_eq!(
-            bytes.len() as u64,
-            copy.size,
-            "one position a control vertex"
-        );
-        let staging = self.buffers.staging;
-        let staging = staging.expect("positions are staged before the upload is finished");
-        self.buffers.all[staging].write(copy.src_offset, bytes);
+        let Buffers {
+            positions: first,
+            points: second,
+            ..
+        } = self.buffers;
+        let pose = &mut self.buffers.pose;
+        pose.replace(first, bytemuck::cast_slice(positions));
+        pose.replace(second, bytemuck::cast_slice(&points));
+        Ok(())
     }
 
     /// The control vertices on the device, three floats each, relative to the model's centre: a storage buffer that is also a copy's target.
@@ -288,122 +299,38 @@ impl TessellatedSurface {
         self.buffers.all[self.buffers.positions].raw()
     }
 
-    /// Writes what the host decides about each patch at a cut: its slot in the ring, with depth tags (a depth for each control vertex) its
-    /// levels, and which refinement pattern it is drawn with. Tags lower levels; none is above that of the cut.
+    /// Brings to the device what the host decided about patches: slots in the ring, levels by depth tags, refinement patterns.
     ///
-    /// Needed before drawing with [`Slots::Host`](super::Slots::Host), with [`Backend::Pattern`] or with tags, whenever cut, batches or tags
-    /// change. Without tags all patches have the level of the cut again.
+    /// Needed before a list is drawn that [has decisions](DrawList::has_decisions), whenever it is another than the last; harmless else.
     ///
     /// # Errors
-    /// Vulkan's own, when there is no memory for more patterns.
-    ///
-    /// # Panics
-    /// When the number of tags is not that of control vertices.
+    /// [`Misuse::OtherSurface`]; Vulkan's own, when there is no memory for more patterns.
     ///
     /// # Safety
-    /// `device` and `allocator` made this surface, and no submitted command still uses it. `batches` are of this cut.
+    /// `device` and `allocator` made this surface, and no submitted command still uses it.
     pub unsafe fn write_draws(
         &mut self,
         device: &ash::Device,
         allocator: &mut Allocator,
-        cut: Cut,
-        tags: Option<&DepthTags>,
-        batches: &[Batch],
+        list: &DrawList,
     ) -> Result<()> {
-        self.tagged = tags.map_or(Vec::new(), |tags| self.tagged_levels(cut, tags));
-        self.patterns.clear();
-        for batch in batches {
-            let cut = self.options.backend.cut(cut);
-            let pass = &self.prepared.passes[batch.pass];
-            let mut next = 0;
-            let draws: Vec<abi::PatchDraw> = (batch.first..batch.end)
-                .map(|patch| {
-                    let Levels { edges, inside, .. } = self.levels(cut, batch.pass, patch);
-                    let slot = next;
-                    next += cut.points(pass, patch as usize);
-                    abi::PatchDraw {
-                        slot,
-                        edges,
-                        inside,
-                    }
-                })
-                .collect();
-            self.write_records(batch, DRAWS, &draws);
-            if self.options.backend == Backend::Pattern {
-                let mut patterns = std::mem::take(&mut self.patterns);
-                let instances =
-                    patterns.arrange(batch, |patch| self.levels(cut, batch.pass, patch));
-                self.patterns = patterns;
-                self.write_records(batch, INSTANCES, &instances);
-            }
-        }
-        if self.options.backend != Backend::Pattern {
+        self.check_owner(list)?;
+        if !list.has_decisions() {
             return Ok(());
         }
-        // SAFETY: this function's contract.
-        unsafe { self.patterns.write(device, allocator) }
-    }
-
-    /// Writes a record a patch of a batch.
-    fn write_records<T: bytemuck::Pod>(&mut self, batch: &Batch, table: usize, records: &[T]) {
-        let buffer = self.buffers.passes[batch.pass][table];
-        let offset = u64::from(batch.first) * size_of::<T>() as u64;
-        self.buffers.all[buffer].write(offset, bytemuck::cast_slice(records));
-    }
-
-    /// The levels of a patch as it was last [written](Self::write_draws), or else at a cut.
-    pub fn levels(&self, cut: Cut, pass: usize, patch: u32) -> Levels {
-        match self.tagged.get(pass) {
-            Some(levels) => levels[patch as usize],
-            None => {
-                let cut = self.options.backend.cut(cut);
-                cut.levels(&self.prepared.passes[pass], patch as usize)
-            }
+        self.written = None;
+        for pass in 0..self.prepared.passes.len() {
+            let tables = &self.buffers.passes[pass];
+            let (draws, instances) = (tables[DRAWS], tables[INSTANCES]);
+            self.buffers.all[draws].write(0, bytemuck::cast_slice(list.records(pass)));
+            self.buffers.all[instances].write(0, bytemuck::cast_slice(list.instances(pass)));
         }
-    }
-
-    /// The vertices of a patch as it was last [written](Self::write_draws), or else at a cut.
-    pub fn vertices(&self, cut: Cut, pass: usize, patch: u32) -> u32 {
-        let levels = self.levels(cut, pass, patch);
-        match self.options.backend {
-            Backend::Tessellator => levels.vertices(cut.spacing),
-            Backend::Pattern | Backend::Geometry => lattice_vertices(&levels),
+        if self.options.backend == Backend::Pattern {
+            // SAFETY: this function's contract.
+            unsafe { self.patterns.write(device, allocator, list.patterns())? };
         }
-    }
-
-    /// The triangles of a patch as it was last [written](Self::write_draws), or else at a cut: counter-clockwise in (u, v), as numbers of its
-    /// vertices `uv`, which may come in any order. Vertices that are not among them have no triangles.
-    pub fn triangles(&self, cut: Cut, pass: usize, patch: u32, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
-        let levels = self.levels(cut, pass, patch);
-        if self.options.backend == Backend::Tessellator {
-            return triangulate(levels.domain, uv);
-        }
-        let segments = lattice_segments(&levels) as f32;
-        let place = |at: &[f32; 2]| at.map(|x| (x * segments) as u32);
-        let numbers: FxHashMap<[u32; 2], u32> = uv.iter().map(place).zip(0..).collect();
-        let numbered = |places: [[u32; 2]; 3]| {
-            let [a, b, c] = places.map(|place| numbers.get(&place).copied());
-            Some([a?, b?, c?])
-        };
-        pattern(&levels).into_iter().filter_map(numbered).collect()
-    }
-
-    /// The levels that depth tags give to all patches.
-    fn tagged_levels(&self, cut: Cut, tags: &DepthTags) -> Vec<Vec<Levels>> {
-        let backend = self.options.backend;
-        let cut = backend.cut(cut);
-        let sides: Vec<f32> = self.prepared.outline.depths(tags);
-        let level = |side: u32| backend.level_of(sides[side as usize]).min(cut.level);
-        let of_pass = |pass: &Pass| {
-            let patches = pass.patches.iter().zip(&pass.sides);
-            patches
-                .map(|(patch, sides)| {
-                    let edges = sides.map(level);
-                    levels_of_edges(pass.domain, patch, edges, cut.spacing, pass.max_level)
-                })
-                .collect()
-        };
-        self.prepared.passes.iter().map(of_pass).collect()
+        self.written = Some(list.number());
+        Ok(())
     }
 
     /// Destroys everything.
@@ -416,7 +343,11 @@ impl TessellatedSurface {
             device.destroy_descriptor_pool(self.pool, None);
             self.patterns.destroy(device, allocator);
         }
-        for buffer in self.buffers.all {
+        let Buffers {
+            all, tables, pose, ..
+        } = self.buffers;
+        let staging = [tables, pose].into_iter().filter_map(Staging::into_buffer);
+        for buffer in all.into_iter().chain(staging) {
             // SAFETY: this function's contract.
             unsafe { buffer.destroy(device, allocator) };
         }
@@ -464,22 +395,21 @@ impl Buffers {
         self.counts.iter().map(|&number| &self.all[number])
     }
 
-    /// What is to be copied from the staging buffer, and where to.
-    pub(super) fn uploads(
-        &self,
-    ) -> Option<(
-        vk::Buffer,
-        impl Iterator<Item = (vk::Buffer, vk::BufferCopy)> + '_,
-    )> {
-        let copies = self.copies.iter().filter(|(_, copy)| copy.size > 0);
-        let copies = copies.map(|&(number, copy)| (self.all[number].raw(), copy));
-        self.staging
-            .map(|staging| (self.all[staging].raw(), copies))
+    /// What has to be copied since this was asked last: from where to where.
+    pub(super) fn take_uploads(&mut self) -> Vec<(vk::Buffer, vk::Buffer, vk::BufferCopy)> {
+        let mut uploads = Vec::new();
+        for staging in [&mut self.tables, &mut self.pose] {
+            if let Some((from, copies)) = staging.take_copies() {
+                let to = copies.iter().filter(|(_, copy)| copy.size > 0);
+                uploads.extend(to.map(|&(number, copy)| (from, self.all[number].raw(), copy)));
+            }
+        }
+        uploads
     }
 
-    /// Takes the staging buffer out. It is the last one made, so no number changes.
-    pub(super) fn take_staging(&mut self) -> Option<Buffer> {
-        self.staging.take().and_then(|_| self.all.pop())
+    /// Takes the memory out that tables were staged in.
+    pub(super) fn take_staged_tables(&mut self) -> Option<Buffer> {
+        std::mem::take(&mut self.tables).into_buffer()
     }
 }
 
@@ -488,9 +418,14 @@ struct Maker<'a> {
     device: &'a ash::Device,
     allocator: &'a mut Allocator,
     buffers: &'a mut Buffers,
+    /// Bytes that shaders see of a buffer.
+    limit: u64,
 }
 
 impl Maker<'_> {
+    /// # Errors
+    /// [`Misuse::BufferTooLarge`] (VUID-VkWriteDescriptorSet-descriptorType-00333); Vulkan's own.
+    ///
     /// # Safety
     /// The device is live and the allocator its own.
     unsafe fn buffer(
@@ -500,6 +435,10 @@ impl Maker<'_> {
         usage: vk::BufferUsageFlags,
         location: MemoryLocation,
     ) -> Result<usize> {
+        if usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && size > self.limit {
+            let (what, bytes, limit) = (name.into(), size, self.limit);
+            return Err(Error::Misuse(Misuse::BufferTooLarge { what, bytes, limit }));
+        }
         // SAFETY: this function's contract.
         let buffer =
             unsafe { Buffer::new(self.device, self.allocator, name, size, usage, location)? };
@@ -507,21 +446,35 @@ impl Maker<'_> {
         Ok(self.buffers.all.len() - 1)
     }
 
-    /// A buffer on the device that will hold `bytes`.
+    /// A buffer on the device that will hold `bytes` once and for all.
     ///
     /// # Safety
     /// As [`Maker::buffer`].
     unsafe fn table(&mut self, name: &str, bytes: &[u8]) -> Result<usize> {
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         // SAFETY: this function's contract.
-        let number =
-            unsafe { self.buffer(name, bytes.len() as u64, usage, MemoryLocation::GpuOnly)? };
-        let copy = vk::BufferCopy::default()
-            .src_offset(self.buffers.staged.len() as u64)
-            .size(bytes.len() as u64);
-        self.buffers.copies.push((number, copy));
-        self.buffers.staged.extend_from_slice(bytes);
+        let number = unsafe { self.target(name, bytes)? };
+        self.buffers.tables.add(number, bytes);
         Ok(number)
+    }
+
+    /// A buffer on the device whose contents follow from positions.
+    ///
+    /// # Safety
+    /// As [`Maker::buffer`].
+    unsafe fn pose(&mut self, name: &str, bytes: &[u8]) -> Result<usize> {
+        // SAFETY: this function's contract.
+        let number = unsafe { self.target(name, bytes)? };
+        self.buffers.pose.add(number, bytes);
+        Ok(number)
+    }
+
+    /// # Safety
+    /// As [`Maker::buffer`].
+    unsafe fn target(&mut self, name: &str, bytes: &[u8]) -> Result<usize> {
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        let (size, local) = (bytes.len() as u64, MemoryLocation::GpuOnly);
+        // SAFETY: this function's contract.
+        unsafe { self.buffer(name, size, usage, local) }
     }
 
     /// # Safety
@@ -550,37 +503,16 @@ impl Maker<'_> {
         }
     }
 
-    /// Fills the staging buffer.
+    /// Makes and fills the staging memory.
     ///
     /// # Safety
     /// As [`Maker::buffer`].
     unsafe fn stage(&mut self) -> Result<()> {
-        let bytes = std::mem::take(&mut self.buffers.staged);
-        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-        // SAFETY: this function's contract.
-        let staging = unsafe {
-            self.buffer(
-                "staging",
-                bytes.len() as u64,
-                usage,
-                MemoryLocation::CpuToGpu,
-            )?
-        };
-        self.buffers.all[staging].write(0, &bytes);
-        self.buffers.staging = Some(staging);
+        let Buffers { tables, pose, .. } = &mut *self.buffers;
+        for staging in [tables, pose] {
+            // SAFETY: this function's contract.
+            unsafe { staging.fill(self.device, self.allocator)? };
+        }
         Ok(())
     }
-}
-
-/// The counters that any level needs: two of the whole, and one a batch.
-fn counter_count(prepared: &Prepared, options: SurfaceOptions) -> Result<u64> {
-    let mut most = 0;
-    for spacing in [Spacing::Equal, Spacing::FractionalEven] {
-        let cut = Cut {
-            level: options.greatest_level,
-            spacing,
-        };
-        most = most.max(batches(prepared, cut, options.bounds())?.len());
-    }
-    Ok(u64::from(abi::COUNTER_BATCHES) + most as u64 * u64::from(options.rounds))
 }

@@ -81,17 +81,13 @@ pub fn workarounds(driver: &Driver) -> Vec<&'static Workaround> {
         .collect()
 }
 
-/// How many quad patches, each cut into `segments` x `segments` cells, an instance may hold under `active`; `None` if no row
-/// sets a limit. At least 1, which is always right: 65 x 65 vertices are far below any limit.
-pub fn patches_per_instance(active: &[&Workaround], segments: u32) -> Option<u32> {
-    let vertices = (segments + 1) * (segments + 1);
-    active
-        .iter()
-        .filter_map(|row| match row.remedy {
-            Remedy::SplitBatches { max_vertices } => Some((max_vertices / vertices).max(1)),
-            Remedy::PatchNumberFromVertices => None,
-        })
-        .min()
+/// The most tessellated vertices that an instance may hold under `active`; `None` if no row sets a limit.
+pub fn instance_vertices(active: &[&Workaround]) -> Option<u32> {
+    let limits = active.iter().filter_map(|row| match row.remedy {
+        Remedy::SplitBatches { max_vertices } => Some(max_vertices),
+        Remedy::PatchNumberFromVertices => None,
+    });
+    limits.min()
 }
 
 #[cfg(test)]
@@ -119,7 +115,8 @@ mod tests {
     #[test]
     fn other_drivers_need_nothing() {
         assert!(workarounds(&driver(vk::DriverId::MESA_RADV, Version(22, 3, 6))).is_empty());
-        assert_eq!(patches_per_instance(&[], 64), None);
+        assert_eq!(instance_vertices(&[]), None);
+        assert_eq!(instance_vertices(&[&WORKAROUNDS[0]]), Some(65_535));
     }
 
     #[test]
@@ -130,16 +127,5 @@ mod tests {
         };
         assert!(row.applies_to(&driver(row.driver, Version(25, 9, 9))));
         assert!(!row.applies_to(&driver(row.driver, Version(26, 0, 0))));
-    }
-
-    #[test]
-    fn batches_stay_below_the_limit_and_waste_nothing() {
-        let active = [&WORKAROUNDS[0]];
-        for segments in 1..=64 {
-            let patches = patches_per_instance(&active, segments).expect("the row sets a limit");
-            let vertices = (segments + 1) * (segments + 1);
-            assert!(patches * vertices <= 65_535);
-            assert!((patches + 1) * vertices > 65_535);
-        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::features::has_extension;
-use crate::gpu::{ExtraFeatures, FeatureChain, failed};
+use crate::gpu::{Enabled, ExtraFeatures, FeatureChain, failed};
 use crate::host::Instance;
 use crate::host::choice::{DeviceInfo, choose, devices, unavailable};
 use ash::{khr, vk};
@@ -104,6 +104,12 @@ impl Device {
     /// What it is and can do. All of [`DeviceInfo::support`] is switched on.
     pub fn info(&self) -> &DeviceInfo {
         &self.0.info
+    }
+
+    /// The proof of that, for [`Layout::new`](crate::gpu::Layout::new).
+    pub fn enabled(&self) -> Enabled {
+        let enabled = FeatureChain::new(&self.0.info.support).enabled();
+        enabled.expect("only a device that lacks nothing is opened, with this chain")
     }
 
     /// Its limits.

@@ -49,6 +49,7 @@ mod bft;
 mod displacement;
 mod flat;
 mod options;
+mod origin;
 mod outline;
 mod patches;
 mod phong;
@@ -65,9 +66,10 @@ mod vertices;
 use glam::Vec2;
 
 use crate::abi;
-use crate::error::{Error, Result};
+use crate::error::{Error, Misuse, Result};
 use crate::mesh::{Model, Scheme};
 use crate::tessellation::Domain;
+use origin::Origin;
 
 pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
@@ -160,6 +162,7 @@ impl Method {
         self.check_model(model)?;
         let mut prepared = (self.prepare)(model, options.into())?;
         prepared.outline = Outline::new(model.topology());
+        prepared.origin = Origin::new(model);
         for pass in &mut prepared.passes {
             pass.sides = outline::sides_of(model, &pass.patches);
         }
@@ -268,6 +271,8 @@ pub struct Prepared {
     pub outline: Outline,
     /// What is known about the plans, when the method has any.
     pub plans: Option<PlanStatistics>,
+    /// What it was made of. Filled in by [`Method::prepare`].
+    origin: Origin,
 }
 
 /// Patches that are drawn with one set of shaders.
@@ -309,6 +314,34 @@ impl Prepared {
             passes: passes.collect(),
             ..Prepared::default()
         }
+    }
+
+    /// Whether it was made of a model, or of one with the same faces, tags and scheme: the same mesh deformed is as good.
+    pub fn is_of(&self, model: &Model) -> bool {
+        self.origin.is_of(model)
+    }
+
+    /// The control vertices that it was made of.
+    pub fn vertex_count(&self) -> usize {
+        self.origin.vertices
+    }
+
+    /// A number that clones share and nothing else that was prepared has.
+    pub(crate) fn number(&self) -> u64 {
+        self.origin.number
+    }
+
+    /// Refuses lists that have not one entry a control vertex.
+    pub(crate) fn check_count(&self, what: &'static str, given: usize) -> Result<()> {
+        let expected = self.vertex_count();
+        if given == expected {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::Count {
+            what,
+            given,
+            expected,
+        }))
     }
 
     /// Control vertices, relative to the model's centre, with the points that are computed from them: what [`Pass::evaluate`] needs.

@@ -6,8 +6,8 @@ use std::collections::HashMap;
 use ash::vk;
 use hullform::abi::{self, Captured};
 use hullform::gpu::{
-    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, SurfaceOptions, Target,
-    TessellatedSurface, View, Workaround, ring,
+    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, PointPipeline,
+    SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
 };
 use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
@@ -53,7 +53,8 @@ impl Gpu {
             Err(error) => panic!("{error}"),
         };
         // SAFETY: the device is live.
-        let layout = unsafe { Layout::new(device.raw()) }.expect("every device has such layouts");
+        let layout = unsafe { Layout::new(device.raw(), device.enabled()) };
+        let layout = layout.expect("every device has such layouts");
         let target = OffscreenTarget::with_encoding(&device, SIDE, SIDE, 1, Encoding::Unorm);
         Some(Gpu {
             instance,
@@ -98,12 +99,11 @@ impl Gpu {
         };
         self.device.submit(|cmd| {
             // SAFETY: recording on the device that made the surface, outside of a render pass.
-            unsafe { loaded.surface().cmd_upload(device, cmd) };
+            unsafe { loaded.surface_mut().cmd_upload(device, cmd) };
             Ok(())
         })?;
-        let surface = loaded.surface.as_mut().expect("it was just made");
         // SAFETY: the upload has been waited for.
-        unsafe { surface.finish_upload(device, allocator) };
+        unsafe { loaded.surface_mut().finish_upload(device, allocator) };
         Ok(loaded)
     }
 
@@ -123,11 +123,11 @@ impl Gpu {
         assert!(messages.is_empty(), "{}", messages.join("\n"));
     }
 
-    fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &Layout {
         self.layout.as_ref().expect("there until it is finished")
     }
 
-    fn target(&self) -> &OffscreenTarget {
+    pub fn target(&self) -> &OffscreenTarget {
         self.target.as_ref().expect("there until it is finished")
     }
 
@@ -227,6 +227,10 @@ impl Loaded<'_> {
         self.surface.as_ref().expect("there from load to drop")
     }
 
+    pub fn surface_mut(&mut self) -> &mut TessellatedSurface {
+        self.surface.as_mut().expect("there from load to drop")
+    }
+
     pub fn prepared(&self) -> &Prepared {
         self.surface().prepared()
     }
@@ -261,27 +265,44 @@ impl Loaded<'_> {
         unsafe { pipeline.destroy(device) };
     }
 
-    /// Lets the host decide about patches, as [`draw`](Self::draw) needs it when slots are the host's, patterns are drawn, or there are tags.
-    pub fn write_draws(&mut self, cut: Cut, batches: &[Batch]) {
+    /// Replaces the positions on the host and brings them to the device.
+    pub fn replace_positions(&mut self, positions: &[[f32; 3]]) {
         let device = &self.gpu.device;
-        let (allocator, tags) = (&mut device.allocator(), self.tags.as_ref());
         let surface = self.surface.as_mut().expect("there from load to drop");
+        let written = surface.write_positions(positions);
+        written.expect("there is one a control vertex");
+        let uploaded = device.submit(|cmd| {
+            // SAFETY: recording on the device that made the surface, outside of a render pass.
+            unsafe { surface.cmd_upload(device.raw(), cmd) };
+            Ok(())
+        });
+        uploaded.expect("it is executed");
+    }
+
+    /// What is drawn at a cut, with what the host decides about it on the device.
+    pub fn draw_list(&mut self, cut: Cut) -> Result<DrawList> {
+        let list = self.surface().draw_list(cut, self.tags.as_ref())?;
+        let device = &self.gpu.device;
+        let allocator = &mut device.allocator();
         // SAFETY: device and allocator made the surface; every submission has been waited for.
-        unsafe { surface.write_draws(device.raw(), allocator, cut, tags, batches) }
-            .expect("there is memory for patterns");
+        unsafe {
+            self.surface_mut()
+                .write_draws(device.raw(), allocator, &list)?
+        };
+        Ok(list)
     }
 
     /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
     pub fn capture(&mut self, cut: Cut, fill: Fill) -> Result<Frame> {
-        let batches = self.surface().batches(cut)?;
-        self.write_draws(cut, &batches);
+        let list = self.draw_list(cut)?;
+        let batches: Vec<Batch<'_>> = list.batches().collect();
         let mut all = Frame {
             passes: vec![Vec::new(); self.prepared().passes.len()],
             ..Default::default()
         };
         for batches in self.submissions(&batches) {
             let mut frame = self.draw(cut, fill, batches)?;
-            all.passes[batches[0].pass].append(&mut frame.passes[0]);
+            all.passes[batches[0].pass()].append(&mut frame.passes[0]);
             all.counters.overflows += frame.counters.overflows;
             all.counters.points += frame.counters.points;
             all.statistics = match (all.statistics, frame.statistics) {
@@ -293,17 +314,17 @@ impl Loaded<'_> {
     }
 
     /// Batches of one pass in a row, not too many for the capture.
-    fn submissions<'b>(&self, batches: &'b [Batch]) -> Vec<&'b [Batch]> {
+    fn submissions<'b, 'l>(&self, batches: &'b [Batch<'l>]) -> Vec<&'b [Batch<'l>]> {
         let room = self.options.capture_vertices / 2;
         let mut submissions = Vec::new();
         let (mut start, mut vertices) = (0, 0);
         for (number, batch) in batches.iter().enumerate() {
-            let other = batch.pass != batches[start].pass;
-            if number > start && (other || vertices + batch.vertices > room) {
+            let other = batch.pass() != batches[start].pass();
+            if number > start && (other || vertices + batch.vertices() > room) {
                 submissions.push(&batches[start..number]);
                 (start, vertices) = (number, 0);
             }
-            vertices += batch.vertices;
+            vertices += batch.vertices();
         }
         submissions.push(&batches[start..]);
         submissions
@@ -312,7 +333,7 @@ impl Loaded<'_> {
     /// Draws batches in one submission. All that is captured counts as one pass's.
     ///
     /// Between two that do not know of each other (each is the first to use the ring, or they share a counter) there is a barrier.
-    pub fn draw(&self, cut: Cut, fill: Fill, batches: &[Batch]) -> Result<Frame> {
+    pub fn draw(&self, cut: Cut, fill: Fill, batches: &[Batch<'_>]) -> Result<Frame> {
         let gpu = self.gpu;
         let device = gpu.device.raw();
         let counts = gpu.device.info().support.optional.pipeline_statistics_query;
@@ -335,46 +356,41 @@ impl Loaded<'_> {
                     if let Some(query) = &query {
                         query.cmd_begin(cmd);
                     }
-                    self.cmd_draws(cmd, pipelines, cut, batches);
+                    let drawn = self.cmd_draws(cmd, pipelines, batches);
                     if let Some(query) = &query {
                         query.cmd_end(cmd);
                     }
                     gpu.target().end(cmd);
                     self.surface().cmd_read_back(device, cmd);
                     gpu.target().cmd_copy_to_host(cmd);
-                    Ok(())
+                    drawn
                 })
             },
         )?;
         Ok(Frame {
             passes: vec![self.captured()],
-            counters: self.surface().counters(),
+            counters: self.surface().counters()?,
             statistics: query.map(|query| query.read()).transpose()?,
         })
     }
 
-    /// Draws with some pipelines after the other into one picture, each time all batches of a cut, the next ones displaced.
-    pub fn draw_over(&self, cut: Cut, all: &[(&Pipelines, Displacement)]) -> Vec<u8> {
+    /// Draws with some pipelines after the other into one picture, each time all batches of a list, displaced.
+    pub fn draw_over(&self, list: &DrawList, all: &[(&Pipelines, Displacement)]) -> Vec<u8> {
         let gpu = self.gpu;
         let device = gpu.device.raw();
-        let mut batches = self.surface().batches(cut).expect("they fit");
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
         let drawn = gpu.device.submit(|cmd| unsafe {
             self.surface().cmd_prepare(device, cmd);
             gpu.target().begin(cmd, [0.0; 4]);
-            for &(pipelines, displacement) in all {
+            for (round, &(pipelines, displacement)) in all.iter().enumerate() {
                 let view = View {
                     displacement,
                     ..self.view()
                 };
-                for batch in &batches {
+                for batch in list.round(round as u32)? {
                     let (surface, layout) = (self.surface(), gpu.layout());
-                    surface.cmd_draw(device, cmd, layout, pipelines, &view, cut, batch);
+                    surface.cmd_draw(device, cmd, layout, pipelines, &view, batch)?;
                 }
-                batches = batches
-                    .iter()
-                    .map(|batch| self.surface().again(batch))
-                    .collect();
             }
             gpu.target().end(cmd);
             gpu.target().cmd_copy_to_host(cmd);
@@ -390,21 +406,22 @@ impl Loaded<'_> {
         &self,
         cmd: vk::CommandBuffer,
         pipelines: &Pipelines,
-        cut: Cut,
-        batches: &[Batch],
-    ) {
+        batches: &[Batch<'_>],
+    ) -> Result<()> {
         let device = self.gpu.device.raw();
-        for (number, batch) in batches.iter().enumerate() {
+        for (number, &batch) in batches.iter().enumerate() {
             // SAFETY: this function's contract; the target's pass allows the barrier.
             unsafe {
-                if number > 0 && batch.ring_batch == 0 {
+                let alone = !self.options.barriers && batch.waits();
+                if number > 0 && (batch.ring_batch() == 0 || alone) {
                     ring::cmd_ring_barrier(device, cmd);
                 }
                 let layout = self.gpu.layout();
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, &self.view(), cut, batch);
+                    .cmd_draw(device, cmd, layout, pipelines, &self.view(), batch)?;
             }
         }
+        Ok(())
     }
 
     /// From the side, everything within the picture and its depth.
@@ -430,7 +447,11 @@ impl Loaded<'_> {
 
     /// The captured vertices in order, each once: an evaluation shader may run more than once a vertex, with the same result.
     fn captured(&self) -> Vec<Captured> {
-        let mut vertices = self.surface().captured().to_vec();
+        let mut vertices = self
+            .surface()
+            .captured()
+            .expect("it was read back")
+            .to_vec();
         let room = self.options.capture_vertices as usize;
         assert!(room == 0 || vertices.len() < room, "the capture is full");
         vertices.sort_unstable_by_key(key);

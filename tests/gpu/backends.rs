@@ -12,7 +12,7 @@ use hullform::mesh::{Model, Scheme, builtin};
 use hullform::method::{DepthTags, METHODS, Method, Prepared};
 use hullform::plan::PlanOptions;
 use hullform::tessellation::Spacing;
-use hullform::{Error, abi};
+use hullform::{Error, Misuse, abi};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
@@ -157,25 +157,19 @@ fn what_a_backend_cannot_do_is_refused() {
         };
         let workarounds = &gpu.device.info().workarounds;
         match gpu.load(model, prepared, workarounds, options) {
-            Err(Error::Option { option, .. }) => Some(option),
+            Err(Error::Misuse(misuse)) => Some(misuse),
             _ => None,
         }
     };
     let cube = shapes::built_in("cube");
     let flat = METHODS.last().expect("there are methods");
     let ring = &METHODS[0];
-    assert_eq!(
-        refused(&cube, ring, Backend::Pattern, 8.0),
-        Some("--backend")
-    );
-    assert_eq!(
-        refused(&cube, ring, Backend::Geometry, 8.0),
-        Some("--backend")
-    );
-    assert_eq!(
-        refused(&cube, flat, Backend::Geometry, 33.0),
-        Some("--level")
-    );
+    for backend in [Backend::Pattern, Backend::Geometry] {
+        let misuse = refused(&cube, ring, backend, 8.0);
+        assert!(matches!(misuse, Some(Misuse::BackendWithoutRing { .. })));
+    }
+    let misuse = refused(&cube, flat, Backend::Geometry, 33.0);
+    assert!(matches!(misuse, Some(Misuse::BackendLevel { .. })));
     assert_eq!(refused(&cube, flat, Backend::Geometry, 32.0), None);
     assert_eq!(refused(&cube, flat, Backend::Pattern, 64.0), None);
     // Regular faces need no ring.

@@ -9,6 +9,7 @@ mod common;
 mod backends;
 mod edges;
 mod hexagon;
+mod misuse;
 mod points;
 mod precision;
 mod prepass;

@@ -34,22 +34,21 @@ fn check(gpu: &Gpu, method: &str, backend: Backend, spacing: Spacing) {
         Ok(loaded) => loaded,
         Err(_) => panic!("{method} {backend:?} was chosen among those that can"),
     };
-    let batches = loaded.surface().batches(cut).expect("they fit");
-    loaded.write_draws(cut, &batches);
+    let list = loaded.draw_list(cut).expect("it can be cut");
     let none = Displacement::default();
     let some = Displacement {
         height: 1e-3,
         frequency: 20.0,
     };
     let what = format!("{method} {backend:?} {spacing:?}");
-    let picture = loaded.draw_over(cut, &[(&plain, none)]);
+    let picture = loaded.draw_over(&list, &[(&plain, none)]);
     let covered = |picture: &[u8]| picture.chunks(4).filter(|pixel| pixel[3] != 0).count();
     assert!(covered(&picture) > 300, "{what}: {}", covered(&picture));
     for first in [&depth, &plain] {
-        let passes = loaded.draw_over(cut, &[(first, none), (&equal, none)]);
+        let passes = loaded.draw_over(&list, &[(first, none), (&equal, none)]);
         assert!(passes == picture, "{what}: pixels differ");
     }
-    let missed = loaded.draw_over(cut, &[(&depth, some), (&equal, none)]);
+    let missed = loaded.draw_over(&list, &[(&depth, some), (&equal, none)]);
     assert!(
         2 * covered(&missed) < covered(&picture),
         "{what}: EQUAL compares nothing"

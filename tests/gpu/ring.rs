@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use hullform::Error;
 use hullform::abi::Captured;
 use hullform::gpu::{Batch, Cut, Fill, Remedy, Slots, SurfaceOptions, Workaround, workaround};
 use hullform::mesh::Model;
 use hullform::method::Prepared;
 use hullform::tessellation::Spacing;
+use hullform::{Error, Misuse};
 
 use crate::common::gpu::{
     Frame, Gpu, Loaded, SPACINGS, bits, capturing, cut, over_patches, prepare,
@@ -105,7 +105,8 @@ fn batches_of_one_submission_do_not_disturb_each_other() {
     let mut loaded = load(&gpu, &model, &known, cut, |prepared, options| {
         options.ring_bytes = 2 * smallest_ring(prepared, cut);
     });
-    assert!(loaded.surface().batches(cut).expect("they fit").len() > 100);
+    let list = loaded.draw_list(cut).expect("they fit");
+    assert!(list.batches().len() > 100);
     let frame = loaded.capture(cut, Fill::Discard).expect("it is drawn");
     assert_same_bits("two patches a batch", &frame, &reference);
     drop((whole, loaded));
@@ -125,13 +126,7 @@ fn a_ring_too_small_for_a_patch_is_refused() {
     let refused = gpu.load(&model, prepared, &[], options).err();
     let refused = refused.expect("no patch fits");
     assert!(
-        matches!(
-            refused,
-            Error::Option {
-                option: "--ring-bytes",
-                ..
-            }
-        ),
+        matches!(refused, Error::Misuse(Misuse::RingTooSmall { .. })),
         "{refused}"
     );
     assert_eq!(refused.exit_code(), 2);
@@ -152,9 +147,10 @@ fn a_level_above_the_promised_one_is_refused_when_the_ring_is_too_small() {
             options.ring_bytes = smallest_ring(prepared, low);
         },
     );
-    assert!(loaded.surface().batches(low).is_ok());
-    let refused = loaded.surface().batches(cut(64.0, Spacing::Equal));
-    assert!(matches!(refused, Err(Error::Option { .. })));
+    assert!(loaded.surface().draw_list(low, None).is_ok());
+    let high = cut(64.0, Spacing::Equal);
+    let refused = loaded.surface().draw_list(high, None);
+    assert!(matches!(refused, Err(Error::Misuse(Misuse::Level { .. }))));
     drop(loaded);
     gpu.finish();
 }
@@ -171,9 +167,9 @@ fn another_round_gives_the_same_bits() {
         options.rounds = 2;
     });
     let reference = loaded.capture(cut, Fill::Discard).expect("it is drawn");
-    let first = loaded.surface().batches(cut).expect("they fit");
-    let again = first.iter().map(|batch| loaded.surface().again(batch));
-    let both: Vec<Batch> = first.iter().copied().chain(again).collect();
+    let list = loaded.draw_list(cut).expect("they fit");
+    let again = list.round(1).expect("there are two rounds");
+    let both: Vec<Batch<'_>> = list.batches().chain(again).collect();
     // What is captured twice is compared bit by bit where duplicates are removed.
     let frame = loaded.draw(cut, Fill::Discard, &both).expect("it is drawn");
     assert_same_bits("two rounds", &frame, &reference);
@@ -197,33 +193,56 @@ fn whole_patches(captured: &[Captured], reference: &[Captured]) -> BTreeSet<u32>
     patches
 }
 
-/// A batch that is larger than the ring, as it would come from a control shader that runs more often than once a patch.
+/// A batch whose patches ask again, as they would when a control shader runs more often than once a patch.
 #[test]
 fn patches_without_room_are_counted_and_left_out() {
     let Some(gpu) = Gpu::open() else { return };
     let known = gpu.device.info().workarounds.clone();
     let model = shapes::built_in("cubes-2x2x2");
     let cut = cut(6.0, Spacing::Equal);
-    for slots in [Slots::Counter, Slots::Host] {
-        let mut whole = load(&gpu, &model, &known, cut, |_, options| {
-            options.slots = slots
+    let mut loaded = load(&gpu, &model, &known, cut, |prepared, options| {
+        options.ring_bytes = whole_ring(prepared, cut) + 10 * smallest_ring(prepared, cut);
+    });
+    let reference = loaded.capture(cut, Fill::Discard).expect("it is drawn");
+    let list = loaded.draw_list(cut).expect("they fit");
+    let all: Vec<Batch<'_>> = list.batches().collect();
+    assert_eq!(all.len(), 1);
+    let frame = loaded.draw(cut, Fill::Discard, &[all[0], all[0]]);
+    let frame = frame.expect("it is drawn");
+    let there = whole_patches(&frame.passes[0], &reference.passes[0]);
+    assert_eq!(there.len(), 48, "the first ones are there");
+    assert!(frame.counters.overflows > 0, "{:?}", frame.counters);
+    drop(loaded);
+    gpu.finish();
+}
+
+/// With dynamic rendering in mind: the engine waits where a batch says so, and nowhere else. A pass of more patches than an instance may hold
+/// on known drivers is several batches, so that no two draws use the ring at once: synchronization validation has nothing to say.
+#[test]
+fn batches_that_do_not_wait_may_be_drawn_without_a_barrier() {
+    let Some(gpu) = Gpu::open() else { return };
+    let known = gpu.device.info().workarounds.clone();
+    let model = shapes::built_in("cubes-4x4x4");
+    let cut = cut(15.0, Spacing::Equal);
+    for rounds in [1, 2] {
+        let mut loaded = load(&gpu, &model, &known, cut, |prepared, options| {
+            options.ring_bytes = whole_ring(prepared, cut);
+            options.barriers = false;
+            options.capture_vertices = 0;
+            options.rounds = rounds;
         });
-        let all = whole.surface().batches(cut).expect("they fit");
-        assert_eq!(all.len(), 1);
-        let reference = whole.capture(cut, Fill::Discard).expect("it is drawn");
-        let mut tight = load(&gpu, &model, &known, cut, |prepared, options| {
-            options.slots = slots;
-            options.ring_bytes = 10 * smallest_ring(prepared, cut) + 160;
-        });
-        tight.write_draws(cut, &all);
-        let frame = tight.draw(cut, Fill::Discard, &all).expect("it is drawn");
-        let there = whole_patches(&frame.passes[0], &reference.passes[0]);
-        assert_eq!(there.len(), 10, "{slots:?}: as many as there is room for");
-        assert!(
-            frame.counters.overflows >= 38,
-            "{slots:?}: {:?}",
-            frame.counters
-        );
+        let list = loaded.draw_list(cut).expect("they fit");
+        let batches = (0..rounds).flat_map(|round| list.round(round).expect("there are as many"));
+        let batches: Vec<Batch<'_>> = batches.collect();
+        let patches = batches.iter().map(|batch| batch.patches().len());
+        let patches = patches.sum::<usize>();
+        assert!(batches.iter().all(|batch| batch.draws().len() == 1));
+        let frame = loaded.draw(cut, Fill::Discard, &batches);
+        let frame = frame.expect("it is drawn");
+        assert_eq!(frame.counters.overflows, 0);
+        if let Some([counted, ..]) = frame.statistics {
+            assert_eq!(counted, patches as u64);
+        }
     }
     gpu.finish();
 }
@@ -239,7 +258,8 @@ fn a_batch_drawn_again_without_preparation_overflows() {
         options.ring_bytes = whole_ring(prepared, cut);
     });
     let reference = loaded.capture(cut, Fill::Discard).expect("it is drawn");
-    let all = loaded.surface().batches(cut).expect("they fit");
+    let list = loaded.draw_list(cut).expect("they fit");
+    let all: Vec<Batch<'_>> = list.batches().collect();
     let frame = loaded.draw(cut, Fill::Discard, &[all[0], all[0]]);
     let frame = frame.expect("it is drawn");
     assert!(frame.counters.overflows >= 6, "{:?}", frame.counters);

@@ -6,7 +6,7 @@ use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
-use hullform::gpu::{Batch, Cut, Fill, Pipelines, SurfaceOptions};
+use hullform::gpu::{Batch, Fill, Pipelines, SurfaceOptions};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
 use hullform::method::to_ptex;
@@ -46,11 +46,11 @@ pub fn capture(
         let view = drawing.framed(model, camera, SEEN[0] / SEEN[1]);
         drawing.tags(model, cutting, &view, SEEN)
     });
-    let batches = drawing.batches(cut, tags.as_ref())?;
+    let list = drawing.draw_list(cut, tags.as_ref())?;
     let mut surface = Surface::default();
-    for batch in &batches {
-        let captured = capture_batch(gpu, &drawing, &target, &pipelines, cut, batch)?;
-        add_patches(&mut surface, &captured, model, &drawing, cut, batch.pass);
+    for batch in list.batches() {
+        let captured = capture_batch(gpu, &drawing, &target, &pipelines, batch)?;
+        add_patches(&mut surface, &captured, model, &drawing, batch);
     }
     Ok(surface)
 }
@@ -61,29 +61,28 @@ fn capture_batch(
     drawing: &Drawing<'_>,
     target: &OffscreenTarget,
     pipelines: &Pipelines,
-    cut: Cut,
-    batch: &Batch,
+    batch: Batch<'_>,
 ) -> Result<Vec<abi::Captured>> {
     let view = Drawing::nowhere();
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         drawing.surface().cmd_prepare(gpu.device.raw(), cmd);
         target.begin(cmd, [0.0; 4]);
-        drawing.cmd_draw(cmd, pipelines, &view, cut, std::slice::from_ref(batch));
+        let drawn = drawing.cmd_draw(cmd, pipelines, &view, [batch]);
         target.end(cmd);
         drawing.surface().cmd_read_back(gpu.device.raw(), cmd);
-        Ok(())
+        drawn
     })?;
-    let overflows = drawing.counters().overflows;
+    let overflows = drawing.counters()?.overflows;
     if overflows > 0 {
         return Err(Error::Refused(format!(
             "{overflows} patches found no room in the scratch ring; use --slots host, or a larger --ring-bytes"
         )));
     }
     let surface = drawing.surface();
-    let arrival = surface.arrival(cut, std::slice::from_ref(batch));
+    let arrival = surface.arrival([batch])?;
     arrival.check()?;
-    Ok(once_each(surface.captured(), arrival.vertices))
+    Ok(once_each(surface.captured()?, arrival.vertices))
 }
 
 /// The captured vertices by patch, v and u, each once: the evaluating shader may run more than once a vertex.
@@ -113,18 +112,18 @@ fn add_patches(
     captured: &[abi::Captured],
     model: &Model,
     drawing: &Drawing<'_>,
-    cut: Cut,
-    pass_number: usize,
+    batch: Batch<'_>,
 ) {
-    let drawn = drawing.surface();
-    let pass = &drawn.prepared().passes[pass_number];
+    let prepared = drawing.surface().prepared();
+    let pass = &prepared.passes[batch.pass()];
     for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {
         let number = vertices[0].patch_number;
         let patch = &pass.patches[number as usize];
         let first = surface.points.len() as u32;
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
-        let triangles = drawn
-            .triangles(cut, pass_number, number, &uv)
+        let triangles = batch
+            .list()
+            .triangles(prepared, batch.pass(), number, &uv)
             .into_iter()
             .map(|triangle| triangle.map(|i| first + i));
         surface.triangles.extend(triangles);

@@ -6,8 +6,8 @@ use std::time::Instant;
 use ash::vk;
 use glam::{Vec2, Vec3};
 use hullform::gpu::{
-    Backend, Batch, Counters, Cut, Fill, Layout, Pipelines, PointPipeline, Slots, SurfaceOptions,
-    Target, TessellatedSurface, View,
+    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, PointPipeline, Slots,
+    SurfaceOptions, Target, TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
@@ -64,7 +64,9 @@ impl<'a> Drawing<'a> {
             upload_seconds: 0.0,
         };
         // SAFETY: the device is live and was opened with every feature that `Support` asks for.
-        let layout = drawing.layout.insert(unsafe { Layout::new(device)? });
+        let layout = drawing
+            .layout
+            .insert(unsafe { Layout::new(device, gpu.device.enabled())? });
         let allocator = &mut gpu.device.allocator();
         // SAFETY: as above; allocator and layout are the device's own.
         let surface = unsafe {
@@ -92,12 +94,12 @@ impl<'a> Drawing<'a> {
         });
         let pipeline = on_device.transpose()?;
         let uploaded = gpu.device.submit(|cmd| {
-            let (surface, layout) = (self.surface(), self.layout());
             // SAFETY: recording on the device that made everything, outside of a render pass; the upload makes control vertices visible.
             unsafe {
-                surface.cmd_upload(device, cmd);
+                self.surface_mut().cmd_upload(device, cmd);
                 if let Some(pipeline) = &pipeline {
-                    surface.cmd_points(device, cmd, layout, pipeline);
+                    self.surface()
+                        .cmd_points(device, cmd, self.layout(), pipeline);
                 }
             }
             Ok(())
@@ -107,7 +109,7 @@ impl<'a> Drawing<'a> {
             unsafe { pipeline.destroy(device) };
         }
         uploaded?;
-        let surface = self.surface.as_mut().expect("there from new to drop");
+        let surface = self.surface_mut();
         // SAFETY: the upload has been waited for.
         unsafe { surface.finish_upload(gpu.device.raw(), &mut gpu.device.allocator()) };
         self.upload_seconds = started.elapsed().as_secs_f64();
@@ -117,6 +119,10 @@ impl<'a> Drawing<'a> {
     /// The surface.
     pub fn surface(&self) -> &TessellatedSurface {
         self.surface.as_ref().expect("there from new to drop")
+    }
+
+    fn surface_mut(&mut self) -> &mut TessellatedSurface {
+        self.surface.as_mut().expect("there from new to drop")
     }
 
     /// What a camera sees that frames the surface itself, in a picture of some aspect: the control mesh may reach far beyond it.
@@ -157,16 +163,14 @@ impl<'a> Drawing<'a> {
         Some(adaptive.tags(outline, &model.positions(), level, seen))
     }
 
-    /// The batches of a cut, with what the host decides about their patches written.
-    pub fn batches(&mut self, cut: Cut, tags: Option<&DepthTags>) -> Result<Vec<Batch>> {
-        let batches = self.surface().batches(cut)?;
+    /// What is drawn at a cut, with what the host decides about patches on the device.
+    pub fn draw_list(&mut self, cut: Cut, tags: Option<&DepthTags>) -> Result<DrawList> {
+        let list = self.surface().draw_list(cut, tags)?;
         let device = &self.gpu.device;
-        let surface = self.surface.as_mut().expect("there from new to drop");
+        let surface = self.surface_mut();
         // SAFETY: device and allocator made the surface; every submission has been waited for.
-        unsafe {
-            surface.write_draws(device.raw(), &mut device.allocator(), cut, tags, &batches)?;
-        }
-        Ok(batches)
+        unsafe { surface.write_draws(device.raw(), &mut device.allocator(), &list)? };
+        Ok(list)
     }
 
     /// The pipelines for a target, which go when they are dropped.
@@ -220,32 +224,26 @@ impl<'a> Drawing<'a> {
     ///
     /// # Safety
     /// As [`TessellatedSurface::cmd_draw`].
-    pub unsafe fn cmd_draw(
+    pub unsafe fn cmd_draw<'l>(
         &self,
         cmd: vk::CommandBuffer,
         pipelines: &Pipelines,
         view: &View,
-        cut: Cut,
-        batches: &[Batch],
-    ) {
+        batches: impl IntoIterator<Item = Batch<'l>>,
+    ) -> Result<()> {
+        let (device, layout) = (self.gpu.device.raw(), self.layout());
         for batch in batches {
             // SAFETY: this function's contract.
             unsafe {
-                self.surface().cmd_draw(
-                    self.gpu.device.raw(),
-                    cmd,
-                    self.layout(),
-                    pipelines,
-                    view,
-                    cut,
-                    batch,
-                );
+                self.surface()
+                    .cmd_draw(device, cmd, layout, pipelines, view, batch)?;
             }
         }
+        Ok(())
     }
 
     /// What the control shaders counted in the last submission.
-    pub fn counters(&self) -> Counters {
+    pub fn counters(&self) -> Result<Counters> {
         self.surface().counters()
     }
 

@@ -16,6 +16,7 @@ mod options;
 mod output;
 mod plan;
 mod progress;
+mod refused;
 mod render;
 mod tessellate;
 mod verify;
@@ -83,6 +84,7 @@ fn exit_code(result: Result<()>) -> ExitCode {
     let Err(error) = result else {
         return ExitCode::SUCCESS;
     };
+    let error = refused::in_words_of_options(error);
     // Not eprintln, which panics where nobody listens.
     let _ = writeln!(std::io::stderr(), "hullform: {}", plain(&error.to_string()));
     ExitCode::from(error.exit_code())

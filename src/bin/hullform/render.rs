@@ -7,7 +7,7 @@ use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
-use hullform::gpu::{self, Batch, Fill, Slots, SurfaceOptions};
+use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
 use hullform::method::Displacement;
@@ -243,22 +243,20 @@ fn draw_with(
         }
         Sight::Given(view) => (view, None),
     };
-    let batches = drawing.batches(cut, tags.as_ref())?;
+    let list = drawing.draw_list(cut, tags.as_ref())?;
     let started = Instant::now();
     let mut pipelines = vec![drawing.pipelines(target, cut.spacing, Fill::Solid)?];
     if scene.wireframe {
         pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
     }
-    let counted = draw_frame(gpu, target, scene, &view, &drawing, &pipelines, &batches)?;
+    let counted = draw_frame(gpu, target, scene, &view, &drawing, &pipelines, &list)?;
     let seconds = started.elapsed().as_secs_f64();
     // Patches without room in the ring are known to be missing: see `draw`.
-    if drawing.counters().overflows == 0 {
-        let drawn = batches.repeat(pipelines.len());
-        drawing.surface().arrival(cut, &drawn).check()?;
+    if drawing.counters()?.overflows == 0 {
+        let drawn = (0..pipelines.len()).flat_map(|_| list.batches());
+        drawing.surface().arrival(drawn)?.check()?;
     }
-    Ok(statistics(
-        gpu, scene, &drawing, &batches, &counted, seconds,
-    ))
+    statistics(gpu, scene, &drawing, &list, &counted, seconds)
 }
 
 /// Draws one frame: the surface, and with a second set of pipelines its lines. Returns the pipeline statistics of the surface.
@@ -269,7 +267,7 @@ fn draw_frame(
     view: &View,
     drawing: &Drawing<'_>,
     pipelines: &[OwnPipelines<'_>],
-    batches: &[Batch],
+    list: &DrawList,
 ) -> Result<Option<[u64; 3]>> {
     let statistics = gpu.device.info().support.optional.pipeline_statistics_query;
     let query = statistics
@@ -286,36 +284,23 @@ fn draw_frame(
         if let Some(query) = &query {
             query.cmd_begin(cmd);
         }
-        drawing.cmd_draw(
-            cmd,
-            &pipelines[0],
-            &library_view(view, scene),
-            scene.cutting.cut,
-            batches,
-        );
+        let seen = library_view(view, scene);
+        let mut drawn = drawing.cmd_draw(cmd, &pipelines[0], &seen, list.batches());
         if let Some(query) = &query {
             query.cmd_end(cmd);
         }
         if let Some(lines) = pipelines.get(1) {
-            let again: Vec<Batch> = batches
-                .iter()
-                .map(|batch| drawing.surface().again(batch))
-                .collect();
-            drawing.cmd_draw(
-                cmd,
-                lines,
-                &gpu::View {
-                    shading: abi::SHADING_LINES,
-                    ..library_view(view, scene)
-                },
-                scene.cutting.cut,
-                &again,
-            );
+            let seen = gpu::View {
+                shading: abi::SHADING_LINES,
+                ..seen
+            };
+            let again = list.round(1)?;
+            drawn = drawn.and_then(|()| drawing.cmd_draw(cmd, lines, &seen, again));
         }
         target.end(cmd);
         drawing.surface().cmd_read_back(device, cmd);
         target.cmd_copy_to_host(cmd);
-        Ok(())
+        drawn
     })?;
     query.map(|query| query.read()).transpose()
 }
@@ -325,10 +310,10 @@ fn statistics(
     gpu: &Gpu,
     scene: &Scene<'_>,
     drawing: &Drawing<'_>,
-    batches: &[Batch],
+    list: &DrawList,
     counted: &Option<[u64; 3]>,
     first_frame: f64,
-) -> Value {
+) -> Result<Value> {
     let info = gpu.device.info();
     let plans = drawing
         .surface()
@@ -343,9 +328,9 @@ fn statistics(
         .iter()
         .map(|pass| pass.patches.len())
         .sum();
-    let ring_batches = batches.iter().filter(|batch| batch.points > 0).count();
-    let counters = drawing.counters();
-    json!({
+    let ring_batches = list.batches().filter(|batch| batch.points() > 0).count();
+    let counters = drawing.counters()?;
+    Ok(json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
         "method": scene.chosen.method.name,
@@ -354,7 +339,7 @@ fn statistics(
         "spacing": scene.cutting.cut.spacing.name(),
         "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },
         "plans": plans.plans,
-        "draws": batches.len(),
+        "draws": list.batches().map(|batch| batch.draws().len()).sum::<usize>(),
         "batches": ring_batches,
         "workarounds": gpu.workarounds.iter().map(|row| row.name).collect::<Vec<_>>(),
         "pipeline_statistics": counted.map(|[patches, evaluations, clipping]| json!({
@@ -373,7 +358,7 @@ fn statistics(
             "upload": drawing.upload_seconds,
             "first_frame": first_frame,
         },
-    })
+    }))
 }
 
 /// The view as the library takes it.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use hullform::gpu::{Backend, Batch, Fill, SurfaceOptions};
+use hullform::gpu::{Backend, DrawList, Fill, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
 use hullform::{Error, Result};
@@ -16,7 +16,7 @@ use crate::render;
 struct Ready<'a> {
     drawing: Drawing<'a>,
     pipelines: OwnPipelines<'a>,
-    batches: Vec<Batch>,
+    list: DrawList,
     /// Tells whether frames were whole, where the device counts: counting in the shaders would cost what is to be measured.
     query: Option<StatisticsQuery>,
 }
@@ -37,7 +37,7 @@ pub fn seconds(
     let mut least = vec![f64::INFINITY; methods.len()];
     for _ in 0..frames {
         for (ready, least) in ready.iter().zip(&mut least) {
-            *least = least.min(draw(gpu, ready, cutting, &target)?);
+            *least = least.min(draw(gpu, ready, &target)?);
         }
     }
     Ok(least)
@@ -65,14 +65,14 @@ fn prepare<'a>(
     let query = counts.then(|| StatisticsQuery::new(&gpu.device));
     Ok(Ready {
         query: query.transpose()?,
-        batches: drawing.batches(cutting.cut, None)?,
+        list: drawing.draw_list(cutting.cut, None)?,
         pipelines: drawing.pipelines(target, cutting.cut.spacing, Fill::Discard)?,
         drawing,
     })
 }
 
 /// Draws a frame and returns how many seconds it took.
-fn draw(gpu: &Gpu, ready: &Ready<'_>, cutting: Cutting, target: &OffscreenTarget) -> Result<f64> {
+fn draw(gpu: &Gpu, ready: &Ready<'_>, target: &OffscreenTarget) -> Result<f64> {
     let started = Instant::now();
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
@@ -85,17 +85,15 @@ fn draw(gpu: &Gpu, ready: &Ready<'_>, cutting: Cutting, target: &OffscreenTarget
         if let Some(query) = &ready.query {
             query.cmd_begin(cmd);
         }
-        let (pipelines, batches) = (&ready.pipelines, &ready.batches);
+        let (pipelines, batches) = (&ready.pipelines, ready.list.batches());
         let view = &Drawing::nowhere();
-        ready
-            .drawing
-            .cmd_draw(cmd, pipelines, view, cutting.cut, batches);
+        let drawn = ready.drawing.cmd_draw(cmd, pipelines, view, batches);
         if let Some(query) = &ready.query {
             query.cmd_end(cmd);
         }
         target.end(cmd);
         surface.cmd_read_back(gpu.device.raw(), cmd);
-        Ok(())
+        drawn
     })?;
     let seconds = started.elapsed().as_secs_f64();
     check(ready)?;
@@ -108,10 +106,13 @@ fn check(ready: &Ready<'_>) -> Result<()> {
         return Ok(());
     };
     let [_, evaluations, _] = query.read()?;
-    let vertices = ready.batches.iter().map(|batch| u64::from(batch.vertices));
+    let vertices = ready
+        .list
+        .batches()
+        .map(|batch| u64::from(batch.vertices()));
     let predicted: u64 = vertices.sum();
     // Patches without room in the ring are another matter.
-    if evaluations >= predicted || ready.drawing.counters().overflows > 0 {
+    if evaluations >= predicted || ready.drawing.counters()?.overflows > 0 {
         return Ok(());
     }
     Err(Error::Lost {

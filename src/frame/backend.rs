@@ -1,11 +1,8 @@
 //! Who cuts patches into triangles: the three implementations of section 3.2 of Boubekeur, Schlick 2007.
 
-use ash::vk;
-
 use crate::abi;
-use crate::error::{Error, Result};
-use crate::gpu::batches::Cut;
-use crate::gpu::ring::RING_STAGES;
+use crate::error::{Error, Misuse, Result};
+use crate::frame::Cut;
 use crate::method::Prepared;
 use crate::tessellation::{Levels, Spacing, lattice_rows, lattice_vertices};
 
@@ -49,7 +46,7 @@ impl Backend {
     }
 
     /// The level of a depth: whole depths have powers of two, to the last bit.
-    pub(super) fn level_of(self, depth: f32) -> f32 {
+    pub(crate) fn level_of(self, depth: f32) -> f32 {
         let whole = depth.floor();
         let level = (1u32 << whole as u32) as f32;
         match self {
@@ -59,7 +56,7 @@ impl Backend {
     }
 
     /// How many vertices the evaluating shader captures of a patch, each run of it counted.
-    pub(super) fn vertices(self, levels: &Levels, spacing: Spacing) -> u32 {
+    pub(crate) fn vertices(self, levels: &Levels, spacing: Spacing) -> u32 {
         match self {
             Backend::Tessellator => levels.vertices(spacing),
             Backend::Pattern => lattice_vertices(levels),
@@ -67,59 +64,30 @@ impl Backend {
         }
     }
 
-    /// The stages that evaluate, and those that hand over to them.
-    pub(super) fn stages(self) -> vk::PipelineStageFlags {
-        match self {
-            Backend::Tessellator => RING_STAGES,
-            Backend::Pattern => vk::PipelineStageFlags::VERTEX_SHADER,
-            Backend::Geometry => vk::PipelineStageFlags::GEOMETRY_SHADER,
-        }
-    }
-
     /// Whether it can draw what was prepared, at up to `level`.
     ///
     /// # Errors
-    /// [`Error::Option`] when it cannot.
+    /// [`Misuse::BackendWithoutRing`] and [`Misuse::BackendLevel`] when it cannot.
     pub fn check(self, prepared: &Prepared, level: f32) -> Result<()> {
-        let refused = |option, problem, remedy: &str| {
-            Err(Error::Option {
-                option,
-                problem,
-                remedy: remedy.into(),
-            })
-        };
         if self == Backend::Tessellator {
             return Ok(());
         }
-        if prepared
-            .passes
-            .iter()
-            .any(|pass| !pass.scratch_points.is_empty())
-        {
-            let problem = format!(
-                "the method's patches need the scratch ring, which only control shaders fill, and the backend {} has none",
-                self.name()
-            );
-            return refused(
-                "--backend",
-                problem,
-                "choose the backend tessellator, or a method without a ring",
-            );
+        let mut passes = prepared.passes.iter();
+        if passes.any(|pass| !pass.scratch_points.is_empty()) {
+            return Err(Error::Misuse(Misuse::BackendWithoutRing {
+                backend: self.name(),
+            }));
         }
         let cut = Cut {
             level,
             spacing: Spacing::Equal,
         };
-        if self == Backend::Geometry && self.cut(cut).level > abi::GEOMETRY_ROWS as f32 {
-            let problem = format!(
-                "the backend geometry goes to level {} only: geometry shaders have no more invocations on every device",
-                abi::GEOMETRY_ROWS
-            );
-            return refused(
-                "--level",
-                problem,
-                "choose a lower level, or the backend pattern or tessellator",
-            );
+        let greatest = abi::GEOMETRY_ROWS as f32;
+        if self == Backend::Geometry && self.cut(cut).level > greatest {
+            return Err(Error::Misuse(Misuse::BackendLevel {
+                backend: self.name(),
+                greatest,
+            }));
         }
         Ok(())
     }

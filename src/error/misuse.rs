@@ -1,0 +1,106 @@
+//! What a caller of the library did that cannot be drawn: refused, where it would otherwise tear a picture.
+
+/// What a caller did that cannot be drawn. Nothing has been recorded or written when one of these is returned.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Misuse {
+    /// The scratch ring is too small.
+    #[error("the scratch ring is too small: a single patch needs {needed} bytes, it has {given}")]
+    RingTooSmall {
+        /// Bytes that the patch needs.
+        needed: u64,
+        /// Bytes that the ring has.
+        given: u64,
+    },
+    /// A level that is no number, or beyond what the surface was made for.
+    #[error("the level is {level}, and this surface is drawn at levels from 1 to {greatest}")]
+    Level {
+        /// What was asked for.
+        level: f32,
+        /// The greatest that can be drawn.
+        greatest: f32,
+    },
+    /// The method's patches need the scratch ring, which the backend has not.
+    #[error(
+        "the method's patches need the scratch ring, which only control shaders fill, and the backend {backend} has none"
+    )]
+    BackendWithoutRing {
+        /// The backend's name.
+        backend: &'static str,
+    },
+    /// The backend does not go to such a level.
+    #[error(
+        "the backend {backend} goes to level {greatest} only: geometry shaders have no more invocations on every device"
+    )]
+    BackendLevel {
+        /// The backend's name.
+        backend: &'static str,
+        /// The greatest level that it does.
+        greatest: f32,
+    },
+    /// A surface that is never drawn.
+    #[error("a surface is drawn in one round at least")]
+    NoRounds,
+    /// Vertices that are captured are counted by that.
+    #[error("vertices are captured already; count them or capture them")]
+    CountedAndCaptured,
+    /// A round beyond those that the surface has counters for.
+    #[error("round {round} (from 0) of a surface that was made for {rounds}")]
+    Round {
+        /// Which was asked for, from 0.
+        round: u32,
+        /// How many there are.
+        rounds: u32,
+    },
+    /// What was prepared is another mesh's.
+    #[error("what was prepared is of another mesh: faces, tags or scheme differ")]
+    OtherMesh,
+    /// The draw list is another surface's.
+    #[error("the draw list was made for something else that was prepared, or for other options")]
+    OtherSurface,
+    /// The draw list needs what the host decides about patches, and another list's is on the device, or none.
+    #[error("what the host decides about this draw list's patches was not written last")]
+    NotWritten,
+    /// The pipelines draw something else.
+    #[error("the pipelines are for other passes, another backend or another spacing")]
+    OtherPipelines,
+    /// A list of one entry a control vertex has another length.
+    #[error("{given} {what} for {expected} control vertices")]
+    Count {
+        /// What is listed.
+        what: &'static str,
+        /// How many came.
+        given: usize,
+        /// How many control vertices there are.
+        expected: usize,
+    },
+    /// A depth tag that is no depth.
+    #[error("the depth tag of control vertex {vertex} is {depth}, and depths are from 0 to 6")]
+    Depth {
+        /// The vertex, from 0.
+        vertex: usize,
+        /// Its tag.
+        depth: f32,
+    },
+    /// A buffer that shaders cannot see as a whole.
+    #[error(
+        "{what}: {bytes} bytes, and shaders of this device see {limit} (maxStorageBufferRange)"
+    )]
+    BufferTooLarge {
+        /// What it holds.
+        what: String,
+        /// Its size.
+        bytes: u64,
+        /// The device's limit.
+        limit: u64,
+    },
+    /// Features that the device was created without.
+    #[error("the device was created without {}", .lacking.join(", "))]
+    Features {
+        /// What is lacking, each in words.
+        lacking: Vec<String>,
+    },
+    /// Nothing has been read back yet.
+    #[error("nothing was read back: no cmd_read_back has been executed")]
+    NotReadBack,
+}

@@ -1,0 +1,201 @@
+//! Batches: runs of patches that fit into the scratch ring together, and into whatever else bounds a draw.
+
+use crate::error::{Error, Misuse, Result};
+use crate::frame::{Backend, Cut};
+use crate::method::{Pass, Prepared};
+
+/// Patches of a pass that are drawn at once: full instances, with no patch over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    /// The pass.
+    pub pass: usize,
+    /// The first patch.
+    pub first: u32,
+    /// Patches an instance.
+    pub per_instance: u32,
+    /// Instances.
+    pub instances: u32,
+    /// Points that its patches need in the ring.
+    pub points: u32,
+    /// Vertices that are captured of its patches; fewer where depth tags lower their levels.
+    pub vertices: u32,
+    /// Which of the runs that use the ring this is.
+    pub ring_batch: u32,
+}
+
+impl Run {
+    /// Its patches.
+    pub fn patches(&self) -> std::ops::Range<u32> {
+        self.first..self.first + self.per_instance * self.instances
+    }
+}
+
+/// What bounds a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Bounds {
+    /// Points in the ring.
+    pub points: u32,
+    /// Vertices.
+    pub vertices: u32,
+    /// Who makes them.
+    pub backend: Backend,
+    /// Tessellated vertices an instance, on drivers that bound them.
+    pub instance_vertices: Option<u32>,
+}
+
+/// Cuts all passes into batches within the bounds, at a cut as the backend makes it.
+///
+/// # Errors
+/// [`Misuse::RingTooSmall`] when one patch alone needs more points than the ring has.
+pub(super) fn batches(prepared: &Prepared, cut: Cut, bounds: Bounds) -> Result<Vec<Run>> {
+    let mut runs = Vec::new();
+    let mut ring_batch = 0;
+    for (number, pass) in prepared.passes.iter().enumerate() {
+        let most = bounds.patches_per_instance(pass, cut);
+        let mut first = 0;
+        while (first as usize) < pass.patches.len() {
+            let mut run = Run {
+                pass: number,
+                ring_batch,
+                ..bounds.longest(pass, cut, first)?
+            };
+            bounds.trim(&mut run, pass, cut, most);
+            ring_batch += u32::from(!pass.scratch_points.is_empty());
+            first = run.patches().end;
+            runs.push(run);
+        }
+    }
+    Ok(runs)
+}
+
+impl Bounds {
+    /// How many patches an instance may hold: of those that are cut finest.
+    fn patches_per_instance(&self, pass: &Pass, cut: Cut) -> u32 {
+        let Some(most) = self.instance_vertices else {
+            return u32::MAX;
+        };
+        let greatest = (0..pass.patches.len()).map(|patch| cut.levels(pass, patch).greatest());
+        let segments = cut.spacing.segments(greatest.fold(1.0, f32::max));
+        patches_per_instance(most, segments)
+    }
+
+    /// As many patches from `first` on as fit, one at least; as one instance.
+    fn longest(&self, pass: &Pass, cut: Cut, first: u32) -> Result<Run> {
+        let mut run = Run {
+            pass: 0,
+            first,
+            per_instance: 0,
+            instances: 1,
+            points: 0,
+            vertices: 0,
+            ring_batch: 0,
+        };
+        for patch in first as usize..pass.patches.len() {
+            let [points, vertices] = self.needs(pass, cut, patch);
+            if points > self.points {
+                return Err(Error::Misuse(Misuse::RingTooSmall {
+                    needed: 16 * u64::from(points),
+                    given: 16 * u64::from(self.points),
+                }));
+            }
+            let fits = run.points + points <= self.points
+                && run.vertices.saturating_add(vertices) <= self.vertices;
+            if run.per_instance > 0 && !fits {
+                break;
+            }
+            run.per_instance += 1;
+            run.points += points;
+            run.vertices += vertices;
+        }
+        Ok(run)
+    }
+
+    /// Leaves out the last patches that would make an instance by themselves: two draws that use the ring would need a barrier between them,
+    /// since synchronization is a matter of whole buffers.
+    fn trim(&self, run: &mut Run, pass: &Pass, cut: Cut, most: u32) {
+        let end = run.patches().end;
+        [run.per_instance, run.instances] = full_instances(run.per_instance, most);
+        for patch in run.patches().end..end {
+            let [points, vertices] = self.needs(pass, cut, patch as usize);
+            run.points -= points;
+            run.vertices -= vertices;
+        }
+    }
+
+    /// Points and vertices of a patch.
+    fn needs(&self, pass: &Pass, cut: Cut, patch: usize) -> [u32; 2] {
+        let levels = cut.levels(pass, patch);
+        let vertices = self.backend.vertices(&levels, cut.spacing);
+        [cut.points(pass, patch), vertices]
+    }
+}
+
+/// How many quad patches, each cut into `segments` x `segments` cells, an instance of at most `most` vertices may hold. At least 1, which is
+/// always right: 65 x 65 vertices are far below any limit.
+fn patches_per_instance(most: u32, segments: u32) -> u32 {
+    (most / ((segments + 1) * (segments + 1))).max(1)
+}
+
+/// Patches an instance, `most` at most, and full instances of `patches`. What is over is less than `most`: so where a run of the greatest
+/// length ends, two trimmed ones have ended, since the second begins less than `most` before that and either holds what is left in one
+/// instance, or more.
+fn full_instances(patches: u32, most: u32) -> [u32; 2] {
+    let instances = patches.div_ceil(most);
+    if instances <= most {
+        [patches / instances, instances]
+    } else {
+        [most, patches / most]
+    }
+}
+
+/// The greatest number of batches that use the ring, whatever the cut up to the greatest level. Runs of the greatest length are the fewer the
+/// lower the level is, and trimmed ones are at most twice as many; see [`full_instances`].
+///
+/// # Errors
+/// As [`batches`].
+pub(super) fn most_ring_batches(
+    prepared: &Prepared,
+    cuts: [Cut; 2],
+    bounds: Bounds,
+) -> Result<u32> {
+    let whole = Bounds {
+        instance_vertices: None,
+        ..bounds
+    };
+    let mut most = 0;
+    for cut in cuts {
+        let runs = batches(prepared, bounds.backend.cut(cut), whole)?;
+        let ring = |run: &&Run| !prepared.passes[run.pass].scratch_points.is_empty();
+        most = most.max(runs.iter().filter(ring).count() as u32);
+    }
+    Ok(most * (1 + u32::from(bounds.instance_vertices.is_some())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn instances_stay_below_the_limit_and_waste_nothing() {
+        for segments in 1..=64 {
+            let patches = patches_per_instance(65_535, segments);
+            let vertices = (segments + 1) * (segments + 1);
+            assert!(patches * vertices <= 65_535);
+            assert!((patches + 1) * vertices > 65_535);
+        }
+        assert_eq!(patches_per_instance(1, 64), 1);
+    }
+
+    #[test]
+    fn full_instances_leave_less_over_than_one_holds() {
+        for most in [1, 2, 3, 15, 64, 809, u32::MAX] {
+            for patches in (1..3000).chain([100_000, 1 << 20]) {
+                let [per_instance, instances] = full_instances(patches, most);
+                assert!(per_instance <= most && instances > 0 && per_instance > 0);
+                let over = patches - per_instance * instances;
+                assert!(over < most, "{patches} {most}");
+                assert!(2 * over < patches, "{patches} {most}");
+            }
+        }
+    }
+}

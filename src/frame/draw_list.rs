@@ -1,0 +1,340 @@
+//! What is drawn of a surface in a frame: batches in their order, the draws that each consists of, and what the host decides about patches.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rustc_hash::FxHashMap;
+
+use crate::abi;
+use crate::error::{Error, Misuse, Result};
+use crate::frame::batches::{Run, batches, most_ring_batches};
+use crate::frame::patterns::Patterns;
+use crate::frame::{Backend, Cut, Draw, Slots, SurfaceOptions};
+use crate::method::{DepthTags, Pass, Prepared};
+use crate::tessellation::{
+    Levels, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
+};
+
+/// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
+///
+/// It belongs to what was prepared and to the options that it was made with: a surface of other ones refuses it.
+#[derive(Clone, Debug)]
+pub struct DrawList {
+    number: u64,
+    prepared: u64,
+    options: SurfaceOptions,
+    instance_vertices: Option<u32>,
+    cut: Cut,
+    runs: Vec<Run>,
+    ring_batches: u32,
+    /// By run.
+    draws: Vec<Vec<Draw>>,
+    /// By pass and patch, where depth tags are given.
+    tagged: Option<Vec<Vec<Levels>>>,
+    records: Vec<Vec<abi::PatchDraw>>,
+    instances: Vec<Vec<u32>>,
+    patterns: Vec<Levels>,
+}
+
+impl DrawList {
+    /// Decides how what was prepared is drawn at a cut, with a depth for each control vertex if there are tags: they lower levels; none is above
+    /// the cut's. Some drivers bound the tessellated vertices of an instance: `instance_vertices`, see `gpu::workaround`.
+    ///
+    /// # Errors
+    /// [`Misuse`] when options and cut do not go together, the ring cannot hold a single patch, or a tag is no depth or belongs to no vertex.
+    pub fn new(
+        prepared: &Prepared,
+        options: &SurfaceOptions,
+        instance_vertices: Option<u32>,
+        cut: Cut,
+        tags: Option<&DepthTags>,
+    ) -> Result<DrawList> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        options.check(prepared)?;
+        let cut = options.cut(cut)?;
+        let runs = batches(prepared, cut, options.bounds(instance_vertices))?;
+        let uses_ring = |run: &&Run| !prepared.passes[run.pass].scratch_points.is_empty();
+        let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
+        let mut list = DrawList {
+            number: NUMBER.fetch_add(1, Ordering::Relaxed),
+            prepared: prepared.number(),
+            options: *options,
+            instance_vertices,
+            cut,
+            ring_batches: runs.iter().filter(uses_ring).count() as u32,
+            draws: Vec::new(),
+            tagged: tagged.transpose()?,
+            records: Vec::new(),
+            instances: Vec::new(),
+            patterns: Vec::new(),
+            runs,
+        };
+        list.decide(prepared);
+        Ok(list)
+    }
+
+    /// The counters that a surface needs for all of its batches that use the ring, in all rounds, at any cut that its options allow.
+    ///
+    /// # Errors
+    /// As [`DrawList::new`].
+    pub fn ring_counters(
+        prepared: &Prepared,
+        options: &SurfaceOptions,
+        instance_vertices: Option<u32>,
+    ) -> Result<u64> {
+        options.check(prepared)?;
+        let bounds = options.bounds(instance_vertices);
+        let most = most_ring_batches(prepared, options.greatest_cuts(), bounds)?;
+        Ok(u64::from(most) * u64::from(options.rounds))
+    }
+
+    /// Fills in draws, and what the host decides about each patch where it does.
+    fn decide(&mut self, prepared: &Prepared) {
+        let records = self.options.slots == Slots::Host || self.tagged.is_some();
+        let patterns = self.options.backend == Backend::Pattern;
+        let mut all = Patterns::default();
+        for pass in &prepared.passes {
+            let room = |wanted: bool| if wanted { pass.patches.len() } else { 0 };
+            self.records.push(Vec::with_capacity(room(records)));
+            self.instances.push(Vec::with_capacity(room(patterns)));
+        }
+        for number in 0..self.runs.len() {
+            let run = self.runs[number].clone();
+            if records {
+                let decided = self.decided(prepared, &run);
+                self.records[run.pass].extend(decided);
+            }
+            if patterns {
+                let levels = |patch| self.levels(prepared, run.pass, patch);
+                let (draws, instances) = all.arrange(run.patches(), levels);
+                self.instances[run.pass].extend(instances);
+                self.draws.push(draws);
+            } else {
+                self.draws.push(vec![Draw::Patches {
+                    first: run.first,
+                    per_instance: run.per_instance,
+                    instances: run.instances,
+                }]);
+            }
+        }
+        self.patterns = all.all;
+    }
+
+    /// The records of a run's patches. Slots have room for the cut's level, which no tag exceeds.
+    fn decided(&self, prepared: &Prepared, run: &Run) -> Vec<abi::PatchDraw> {
+        let pass = &prepared.passes[run.pass];
+        let mut next = 0;
+        run.patches()
+            .map(|patch| {
+                let levels = self.levels(prepared, run.pass, patch);
+                let slot = next;
+                next += self.cut.points(pass, patch as usize);
+                abi::PatchDraw {
+                    slot,
+                    edges: levels.edges,
+                    inside: levels.inside,
+                }
+            })
+            .collect()
+    }
+
+    /// The cut, as the backend makes it.
+    pub fn cut(&self) -> Cut {
+        self.cut
+    }
+
+    /// The options that it was made for.
+    pub fn options(&self) -> &SurfaceOptions {
+        &self.options
+    }
+
+    /// The batches, in the order in which they are drawn: each within the ring, and within the capture if there is one.
+    pub fn batches(&self) -> impl ExactSizeIterator<Item = Batch<'_>> + Clone {
+        self.of_round(0)
+    }
+
+    /// The batches once more in the same frame, for lines over a surface or a second view: round 0 is [`batches`](Self::batches).
+    ///
+    /// # Errors
+    /// [`Misuse::Round`] beyond the [`rounds`](SurfaceOptions::rounds) of the options.
+    pub fn round(&self, round: u32) -> Result<impl ExactSizeIterator<Item = Batch<'_>> + Clone> {
+        let rounds = self.options.rounds;
+        if round < rounds {
+            Ok(self.of_round(round))
+        } else {
+            Err(Error::Misuse(Misuse::Round { round, rounds }))
+        }
+    }
+
+    fn of_round(&self, round: u32) -> impl ExactSizeIterator<Item = Batch<'_>> + Clone {
+        (0..self.runs.len()).map(move |number| Batch {
+            list: self,
+            number,
+            round,
+        })
+    }
+
+    /// Whether it holds what must be on the device before it is drawn.
+    pub fn has_decisions(&self) -> bool {
+        self.options.slots == Slots::Host
+            || self.options.backend == Backend::Pattern
+            || self.tagged.is_some()
+    }
+
+    /// Whether patches have levels of their own.
+    pub fn is_tagged(&self) -> bool {
+        self.tagged.is_some()
+    }
+
+    /// What is decided about each patch of a pass; empty where the cut says all.
+    pub fn records(&self, pass: usize) -> &[abi::PatchDraw] {
+        &self.records[pass]
+    }
+
+    /// The patches of a pass in the order of instances; empty where no patterns are drawn.
+    pub fn instances(&self, pass: usize) -> &[u32] {
+        &self.instances[pass]
+    }
+
+    /// Levels that ask for each of the refinement patterns that are drawn.
+    pub fn patterns(&self) -> &[Levels] {
+        &self.patterns
+    }
+
+    /// A number that no other list has.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Whether it is of what was prepared, for these options, on a driver with this bound.
+    pub fn is_for(
+        &self,
+        prepared: &Prepared,
+        options: &SurfaceOptions,
+        instance_vertices: Option<u32>,
+    ) -> bool {
+        self.prepared == prepared.number()
+            && self.options == *options
+            && self.instance_vertices == instance_vertices
+    }
+
+    /// The levels of a patch; `prepared` is what the list was made for.
+    pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Levels {
+        match &self.tagged {
+            Some(levels) => levels[pass][patch as usize],
+            None => self.cut.levels(&prepared.passes[pass], patch as usize),
+        }
+    }
+
+    /// The vertices of a patch.
+    pub fn vertices(&self, prepared: &Prepared, pass: usize, patch: u32) -> u32 {
+        let levels = self.levels(prepared, pass, patch);
+        match self.options.backend {
+            Backend::Tessellator => levels.vertices(self.cut.spacing),
+            Backend::Pattern | Backend::Geometry => lattice_vertices(&levels),
+        }
+    }
+
+    /// The triangles of a patch: counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order. Vertices that are
+    /// not among them have no triangles.
+    pub fn triangles(
+        &self,
+        prepared: &Prepared,
+        pass: usize,
+        patch: u32,
+        uv: &[[f32; 2]],
+    ) -> Vec<[u32; 3]> {
+        let levels = self.levels(prepared, pass, patch);
+        if self.options.backend == Backend::Tessellator {
+            return triangulate(levels.domain, uv);
+        }
+        let segments = lattice_segments(&levels) as f32;
+        let place = |at: &[f32; 2]| at.map(|x| (x * segments) as u32);
+        let numbers: FxHashMap<[u32; 2], u32> = uv.iter().map(place).zip(0..).collect();
+        let numbered = |places: [[u32; 2]; 3]| {
+            let [a, b, c] = places.map(|place| numbers.get(&place).copied());
+            Some([a?, b?, c?])
+        };
+        pattern(&levels).into_iter().filter_map(numbered).collect()
+    }
+}
+
+/// Patches of a pass that are drawn at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch<'a> {
+    list: &'a DrawList,
+    number: usize,
+    round: u32,
+}
+
+impl<'a> Batch<'a> {
+    /// The list that it belongs to.
+    pub fn list(&self) -> &'a DrawList {
+        self.list
+    }
+
+    fn run(&self) -> &'a Run {
+        &self.list.runs[self.number]
+    }
+
+    /// The pass.
+    pub fn pass(&self) -> usize {
+        self.run().pass
+    }
+
+    /// The patches.
+    pub fn patches(&self) -> Range<u32> {
+        self.run().patches()
+    }
+
+    /// Points that its patches need in the ring.
+    pub fn points(&self) -> u32 {
+        self.run().points
+    }
+
+    /// Vertices that are captured of its patches; fewer where depth tags lower their levels.
+    pub fn vertices(&self) -> u32 {
+        self.run().vertices
+    }
+
+    /// Which of all batches that use the ring this is, of all rounds.
+    pub fn ring_batch(&self) -> u32 {
+        self.run().ring_batch + self.round * self.list.ring_batches
+    }
+
+    /// Whether it must wait until an earlier batch is done with the ring.
+    pub fn waits(&self) -> bool {
+        self.points() > 0 && self.ring_batch() > 0
+    }
+
+    /// The draws that it consists of: one, except where patterns are drawn.
+    pub fn draws(&self) -> &'a [Draw] {
+        &self.list.draws[self.number]
+    }
+}
+
+/// The levels that depth tags give to all patches, at a cut as the backend makes it.
+fn tagged_levels(
+    prepared: &Prepared,
+    backend: Backend,
+    cut: Cut,
+    tags: &DepthTags,
+) -> Result<Vec<Vec<Levels>>> {
+    prepared.check_count("depth tags", tags.depths.len())?;
+    let mut tagged = tags.depths.iter().copied().enumerate();
+    if let Some((vertex, depth)) = tagged.find(|(_, depth)| !(0.0..=6.0).contains(depth)) {
+        return Err(Error::Misuse(Misuse::Depth { vertex, depth }));
+    }
+    let sides: Vec<f32> = prepared.outline.depths(tags);
+    let level = |side: u32| backend.level_of(sides[side as usize]).min(cut.level);
+    let of_pass = |pass: &Pass| {
+        let patches = pass.patches.iter().zip(&pass.sides);
+        patches
+            .map(|(patch, sides)| {
+                let edges = sides.map(level);
+                levels_of_edges(pass.domain, patch, edges, cut.spacing, pass.max_level)
+            })
+            .collect()
+    };
+    Ok(prepared.passes.iter().map(of_pass).collect())
+}

@@ -1,0 +1,126 @@
+//! How a surface uses the device.
+
+use crate::error::{Error, Misuse, Result};
+use crate::frame::batches::Bounds;
+use crate::frame::{Backend, Cut};
+use crate::method::Prepared;
+use crate::tessellation::Spacing;
+
+/// Who gives patches their slots in the scratch ring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Slots {
+    /// The control shaders, from a counter a batch.
+    #[default]
+    Counter,
+    /// The host, by summing up beforehand. The same slots whatever runs when or how often.
+    Host,
+}
+
+/// How a surface uses the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceOptions {
+    /// Who cuts patches into triangles.
+    pub backend: Backend,
+    /// Bytes of the scratch ring.
+    pub ring_bytes: u64,
+    /// Who gives slots.
+    pub slots: Slots,
+    /// Vertices that can be captured at once; 0 for none.
+    pub capture_vertices: u32,
+    /// Counts the vertices of each patch as they are evaluated, so that `gpu::TessellatedSurface::arrival` tells whether the device lost any.
+    /// Costs an atomic operation a vertex. Not together with a capture, which tells as much.
+    pub count_vertices: bool,
+    /// The greatest level that will be drawn, 1..=64; for [`Backend::Geometry`] at most 32.
+    pub greatest_level: f32,
+    /// How many times the batches are drawn after one `cmd_prepare`, 1 at least; see
+    /// [`DrawList::round`](super::DrawList::round).
+    pub rounds: u32,
+    /// Whether `cmd_draw` records the barriers that batches need. Switch it off for dynamic rendering, which
+    /// allows no such barrier: before each batch that [waits](super::Batch::waits) the engine then ends rendering, records
+    /// `gpu::ring::cmd_ring_barrier` with whatever its attachments need, and begins again with `LOAD`.
+    pub barriers: bool,
+    /// For tests: draws each vertex whose position has an odd number of bits a fiftieth of the picture away. Where faces differ on an edge by a
+    /// single bit, a hole opens that one can see. What is captured stays as it is.
+    pub amplify_cracks: bool,
+}
+
+impl Default for SurfaceOptions {
+    /// The tessellator, a ring of 1 MiB with counters, no capture, no counts, every level, barriers by `cmd_draw`.
+    fn default() -> SurfaceOptions {
+        SurfaceOptions {
+            backend: Backend::Tessellator,
+            ring_bytes: 1 << 20,
+            slots: Slots::Counter,
+            capture_vertices: 0,
+            count_vertices: false,
+            rounds: 1,
+            greatest_level: 64.0,
+            barriers: true,
+            amplify_cracks: false,
+        }
+    }
+}
+
+impl SurfaceOptions {
+    /// Whether what was prepared can be drawn so, whatever the cut.
+    ///
+    /// # Errors
+    /// [`Misuse`], see there: no round, a greatest level that is none, a backend that cannot.
+    pub fn check(&self, prepared: &Prepared) -> Result<()> {
+        if self.rounds == 0 {
+            return Err(Error::Misuse(Misuse::NoRounds));
+        }
+        if self.count_vertices && self.capture_vertices > 0 {
+            return Err(Error::Misuse(Misuse::CountedAndCaptured));
+        }
+        check_level(self.greatest_level, MAX_LEVEL)?;
+        self.backend.check(prepared, self.greatest_level)
+    }
+
+    /// A cut as the backend makes it.
+    ///
+    /// # Errors
+    /// [`Misuse::Level`] for a level that is none, or above the greatest.
+    pub(super) fn cut(&self, cut: Cut) -> Result<Cut> {
+        check_level(cut.level, self.greatest_level)?;
+        Ok(self.backend.cut(cut))
+    }
+
+    /// What bounds a batch, with an instance's vertices where the driver bounds those.
+    pub(super) fn bounds(&self, instance_vertices: Option<u32>) -> Bounds {
+        let vertices = match self.capture_vertices {
+            0 => u32::MAX / 2,
+            captured => captured,
+        };
+        Bounds {
+            points: self.ring_points(),
+            vertices,
+            backend: self.backend,
+            instance_vertices: instance_vertices.filter(|_| self.backend == Backend::Tessellator),
+        }
+    }
+
+    /// Points that the ring holds.
+    pub fn ring_points(&self) -> u32 {
+        (self.ring_bytes / 16).min(u64::from(u32::MAX / 2)) as u32
+    }
+
+    /// The cuts that need the most batches.
+    pub(super) fn greatest_cuts(&self) -> [Cut; 2] {
+        [Spacing::Equal, Spacing::FractionalEven].map(|spacing| Cut {
+            level: self.greatest_level,
+            spacing,
+        })
+    }
+}
+
+/// What tessellators do at most.
+const MAX_LEVEL: f32 = 64.0;
+
+fn check_level(level: f32, greatest: f32) -> Result<()> {
+    // What is no number is not contained either.
+    if (1.0..=greatest).contains(&level) {
+        return Ok(());
+    }
+    Err(Error::Misuse(Misuse::Level { level, greatest }))
+}

@@ -1,0 +1,68 @@
+//! Memory that the host writes and the device copies to where it is read.
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocator;
+
+use crate::error::Result;
+use crate::gpu::Buffer;
+
+/// What is to be copied into numbered buffers, together.
+#[derive(Debug, Default)]
+pub(super) struct Staging {
+    bytes: Vec<u8>,
+    copies: Vec<(usize, vk::BufferCopy)>,
+    buffer: Option<Buffer>,
+    /// Whether there is something that no recorded copy has.
+    changed: bool,
+}
+
+impl Staging {
+    /// Adds what will be copied to a buffer; before [`Staging::fill`].
+    pub fn add(&mut self, number: usize, bytes: &[u8]) {
+        let copy = vk::BufferCopy::default()
+            .src_offset(self.bytes.len() as u64)
+            .size(bytes.len() as u64);
+        self.copies.push((number, copy));
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// Makes the memory, and brings there what was added.
+    ///
+    /// # Safety
+    /// `device` is live and `allocator` its own.
+    pub unsafe fn fill(&mut self, device: &ash::Device, allocator: &mut Allocator) -> Result<()> {
+        let bytes = std::mem::take(&mut self.bytes);
+        let (size, usage) = (bytes.len() as u64, vk::BufferUsageFlags::TRANSFER_SRC);
+        let location = MemoryLocation::CpuToGpu;
+        // SAFETY: this function's contract.
+        let mut buffer =
+            unsafe { Buffer::new(device, allocator, "staging", size, usage, location)? };
+        buffer.write(0, &bytes);
+        self.buffer = Some(buffer);
+        self.changed = true;
+        Ok(())
+    }
+
+    /// Replaces what will be copied to a buffer by as many bytes.
+    pub fn replace(&mut self, number: usize, bytes: &[u8]) {
+        let copy = self.copies.iter().find(|(to, _)| *to == number);
+        let copy = copy.expect("only what was added is replaced").1;
+        debug_assert_eq!(bytes.len() as u64, copy.size);
+        let buffer = self.buffer.as_mut();
+        let buffer = buffer.expect("it is filled as long as the surface lives");
+        buffer.write(copy.src_offset, bytes);
+        self.changed = true;
+    }
+
+    /// The copies that bring the device what has changed since this was asked last.
+    pub fn take_copies(&mut self) -> Option<(vk::Buffer, &[(usize, vk::BufferCopy)])> {
+        let buffer = self.buffer.as_ref()?.raw();
+        std::mem::take(&mut self.changed).then_some((buffer, &self.copies[..]))
+    }
+
+    /// The memory, if it was made.
+    pub fn into_buffer(self) -> Option<Buffer> {
+        self.buffer
+    }
+}

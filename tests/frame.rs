@@ -1,0 +1,170 @@
+//! Draw lists, without a device: whatever the mesh, cut and options, a list draws each patch once and stays within its bounds.
+
+use hullform::frame::{Backend, Cut, Draw, DrawList, Slots, SurfaceOptions};
+use hullform::mesh::{Model, builtin};
+use hullform::method::{DepthTags, METHODS, MethodOptions, Prepared};
+use hullform::tessellation::Spacing;
+
+/// The limit of drivers that lose patches beyond 16 bits, tighter ones to single patches, and none.
+const INSTANCES: [Option<u32>; 4] = [None, Some(65_535), Some(2_000), Some(1)];
+
+const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
+
+/// A model as every method makes it ready that can draw it.
+fn prepared(name: &str) -> Vec<Prepared> {
+    let model = Model::new(builtin(name).expect("it is built in"));
+    let mut methods = METHODS.iter().collect::<Vec<_>>();
+    methods.retain(|method| method.check_model(&model).is_ok());
+    let prepare = |method: &&hullform::method::Method| {
+        let prepared = method.prepare(&model, MethodOptions::default());
+        prepared.expect("the model is sound")
+    };
+    methods.iter().map(prepare).collect()
+}
+
+fn tags(prepared: &Prepared) -> DepthTags {
+    DepthTags::new((0..prepared.vertex_count()).map(|vertex| (vertex % 4) as f32))
+}
+
+/// Holds a list to its promises.
+fn hold(list: &DrawList, prepared: &Prepared, most: Option<u32>, what: &str) {
+    let mut next = vec![0; prepared.passes.len()];
+    let mut ring_batches = 0;
+    for batch in list.batches() {
+        let (pass, patches) = (batch.pass(), batch.patches());
+        assert_eq!(patches.start, next[pass], "{what}: patches in a row");
+        next[pass] = patches.end;
+        assert!(batch.points() <= list.options().ring_points(), "{what}");
+        let &[
+            Draw::Patches {
+                first,
+                per_instance,
+                instances,
+            },
+        ] = batch.draws()
+        else {
+            panic!("{what}: {:?} is not one draw", batch.draws());
+        };
+        assert_eq!(first..first + per_instance * instances, patches, "{what}");
+        let vertices = patches.map(|patch| list.vertices(prepared, pass, patch));
+        let finest = vertices.max().unwrap_or(0);
+        let bounded = most.is_none_or(|most| per_instance == 1 || per_instance * finest <= most);
+        assert!(bounded, "{what}: {per_instance} of {finest} vertices");
+        if !prepared.passes[pass].scratch_points.is_empty() {
+            assert_eq!(batch.ring_batch(), ring_batches, "{what}");
+            ring_batches += 1;
+        }
+    }
+    let passes = prepared.passes.iter();
+    let all: Vec<u32> = passes.map(|pass| pass.patches.len() as u32).collect();
+    assert_eq!(next, all, "{what}: all patches");
+    let counters = DrawList::ring_counters(prepared, list.options(), most);
+    let counters = counters.expect("a list was made with these options");
+    let used = u64::from(ring_batches) * u64::from(list.options().rounds);
+    assert!(used <= counters, "{what}: {used} counters of {counters}");
+}
+
+#[test]
+fn a_list_draws_each_patch_once_within_its_bounds() {
+    let mut lists = 0;
+    for name in ["cube", "ngons", "hull", "pole-64", "sheet"] {
+        for prepared in prepared(name) {
+            for (ring_bytes, capture_vertices) in [(1 << 20, 0), (1 << 15, 0), (1 << 15, 500)] {
+                let options = SurfaceOptions {
+                    ring_bytes,
+                    capture_vertices,
+                    rounds: 2,
+                    greatest_level: 16.0,
+                    ..SurfaceOptions::default()
+                };
+                for most in INSTANCES {
+                    // A pole of 64 faces may be too much for a small ring.
+                    if DrawList::ring_counters(&prepared, &options, most).is_err() {
+                        continue;
+                    }
+                    for level in [1.0, 2.5, 5.0, 8.0, 15.0, 16.0] {
+                        for spacing in SPACINGS {
+                            let cut = Cut { level, spacing };
+                            let list = DrawList::new(&prepared, &options, most, cut, None);
+                            let list = list.expect("what holds the greatest level holds all");
+                            let what = format!("{name} {cut:?} {ring_bytes} {most:?}");
+                            hold(&list, &prepared, most, &what);
+                            lists += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(lists > 1000, "{lists}");
+}
+
+/// Slots of the host follow one another in each batch, and leave room for what the cut needs at most.
+#[test]
+fn slots_of_the_host_do_not_overlap() {
+    let prepared = &prepared("ngons")[0];
+    let options = SurfaceOptions {
+        slots: Slots::Host,
+        ring_bytes: 1 << 15,
+        greatest_level: 8.0,
+        ..SurfaceOptions::default()
+    };
+    let cut = Cut {
+        level: 8.0,
+        spacing: Spacing::Equal,
+    };
+    let tags = tags(prepared);
+    for tags in [None, Some(&tags)] {
+        let list = DrawList::new(prepared, &options, None, cut, tags).expect("it fits");
+        assert!(list.has_decisions() && list.batches().len() > 1);
+        for batch in list.batches() {
+            let pass = &prepared.passes[batch.pass()];
+            let mut next = 0;
+            for patch in batch.patches() {
+                let record = list.records(batch.pass())[patch as usize];
+                assert_eq!(record.slot, next);
+                next += cut.points(pass, patch as usize);
+            }
+            assert_eq!(next, batch.points());
+        }
+    }
+}
+
+#[test]
+fn every_patch_is_an_instance_of_a_pattern() {
+    let prepared = prepared("ngons").pop();
+    let prepared = &prepared.expect("the last method does every mesh");
+    let options = SurfaceOptions {
+        backend: Backend::Pattern,
+        ..SurfaceOptions::default()
+    };
+    let cut = Cut {
+        level: 5.0,
+        spacing: Spacing::FractionalEven,
+    };
+    let list = DrawList::new(prepared, &options, Some(1), cut, Some(&tags(prepared)));
+    let list = list.expect("no ring is needed");
+    assert_eq!(
+        (list.cut().level, list.cut().spacing),
+        (8.0, Spacing::Equal)
+    );
+    assert!(list.patterns().len() > 3);
+    let mut all = 0;
+    for (number, pass) in prepared.passes.iter().enumerate() {
+        let mut patches = list.instances(number).to_vec();
+        patches.sort_unstable();
+        assert!(patches.into_iter().eq(0..pass.patches.len() as u32));
+        all += pass.patches.len();
+    }
+    let draws = list.batches().flat_map(|batch| batch.draws());
+    let drawn = draws.map(|draw| match *draw {
+        Draw::Pattern {
+            pattern, instances, ..
+        } => {
+            assert!((pattern as usize) < list.patterns().len());
+            instances as usize
+        }
+        Draw::Patches { .. } => panic!("patterns are drawn"),
+    });
+    assert_eq!(drawn.sum::<usize>(), all);
+}

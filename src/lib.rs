@@ -87,7 +87,7 @@
 //!
 //! **Dynamic rendering** allows no such barrier. Set `gpu::SurfaceOptions::barriers` to false; before each batch whose `frame::Batch::waits`
 //! is true, end rendering, record `gpu::ring::cmd_ring_barrier` and your attachments' barrier, and begin again with `LOAD`. With a ring
-//! that holds the whole model there is one batch that uses it, and nothing to wait for.
+//! that holds the whole model nothing waits, but for the few patches that are over where a driver bounds the vertices of an instance.
 //!
 //! **Frames in flight** may share a surface on one queue: `cmd_prepare` waits for the shaders of earlier frames. Frames that shall overlap
 //! need a surface each. What the host writes (positions, slots, levels, patterns) and reads (counters, captures) is not doubled: see there.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hullform::method::METHODS;
 
 /// From the ground up. A room may use those before it.
-const ROOMS: [&str; 12] = [
+const ROOMS: [&str; 13] = [
     "abi",
     "error",
     "mesh",

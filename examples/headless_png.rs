@@ -449,11 +449,10 @@ fn render_pass(device: &ash::Device) -> Result<vk::RenderPass, vk::Result> {
     unsafe { device.create_render_pass(&info, None) }
 }
 
-/// From the front, a little from the right and from above. Positions on the GPU are relative to the model's centre, so that f32 is enough
-/// far from the origin too: an engine puts `model.centre()` into its object matrix, in f64.
+/// From the front, a little from the right and from above. Positions on the GPU are in local units, so that f32 is enough whatever the mesh's
+/// size and far from the origin too: an engine puts `model.placement().matrix()` into its object matrix, in f64.
 fn view(model: &Model) -> View {
-    let (low, high) = model.mesh().bounds();
-    let radius = 0.5 * (high - low).length() as f32;
+    let radius = 0.5 * model.diagonal() as f32;
     let distance = 2.0 * radius;
     let eye_from_model = Mat4::from_translation(Vec3::new(0.0, 0.0, -distance))
         * Mat4::from_rotation_x(0.35)

@@ -2,7 +2,7 @@
 #ifndef ABI_GLSL
 #define ABI_GLSL
 
-// Set 0, binding: control vertices, three floats each, relative to the model's centre.
+// Set 0, binding: control vertices, three floats each, in local units.
 const uint BINDING_POSITIONS = 0u;
 // Set 0, binding: `Patch` records.
 const uint BINDING_PATCHES = 1u;
@@ -196,7 +196,7 @@ struct Border {
 
 // A point that is computed from control vertices.
 struct Point {
-    // Position relative to the model's centre.
+    // Position in local units.
     vec3 position;
     // Unit normal, or zero.
     vec3 normal;
@@ -272,9 +272,9 @@ struct Node {
 
 // What changes from draw to draw; push constants.
 struct Frame {
-    // From model space, relative to the model's centre, to clip space.
+    // From local units to clip space.
     mat4 view_projection;
-    // The eye in model space.
+    // The eye in local units.
     vec3 eye;
     // `SHADING_...`
     uint shading;
@@ -306,7 +306,7 @@ struct Captured {
     uint patch_number;
     // Where in the patch's own domain.
     vec2 uv;
-    // Position relative to the model's centre.
+    // Position in local units.
     vec3 position;
     // Unit normal.
     vec3 normal;

@@ -104,7 +104,7 @@ macro_rules! structs {
 }
 
 constants! {
-    /// Set 0, binding: control vertices, three floats each, relative to the model's centre.
+    /// Set 0, binding: control vertices, three floats each, in local units.
     BINDING_POSITIONS = 0;
     /// Set 0, binding: `Patch` records.
     BINDING_PATCHES = 1;
@@ -310,7 +310,7 @@ structs! {
 
     /// A point that is computed from control vertices.
     Point {
-        /// Position relative to the model's centre.
+        /// Position in local units.
         position: [f32; 3],
         /// Unit normal, or zero.
         normal: [f32; 3],
@@ -386,9 +386,9 @@ structs! {
 
     /// What changes from draw to draw; push constants.
     Frame {
-        /// From model space, relative to the model's centre, to clip space.
+        /// From local units to clip space.
         view_projection: [[f32; 4]; 4],
-        /// The eye in model space.
+        /// The eye in local units.
         eye: [f32; 3],
         /// `SHADING_...`
         shading: u32,
@@ -420,7 +420,7 @@ structs! {
         patch_number: u32,
         /// Where in the patch's own domain.
         uv: [f32; 2],
-        /// Position relative to the model's centre.
+        /// Position in local units.
         position: [f32; 3],
         /// Unit normal.
         normal: [f32; 3],

@@ -49,11 +49,11 @@
 //! assert_eq!(pass.patches.len(), 6);
 //!
 //! // And what its evaluation shader would make of that, by the twin. A patch may be turned against its face, so that faces share plans;
-//! // positions are relative to the model's centre.
+//! // positions are in local units: see `Placement`.
 //! let patch = pass.patches.iter().position(|patch| patch.ptex == 1).expect("each face has a patch");
 //! let uv = from_ptex(&pass.patches[patch], [0.5, 0.5]);
 //! let twin = pass.evaluate(&prepared.controls(model.positions()), patch, Vec2::from(uv));
-//! let position = twin.position.as_dvec3() + model.centre();
+//! let position = model.placement().position(twin.position.as_dvec3());
 //! assert!(position.distance(truth.position) < 1e-6);
 //! # Ok::<(), hullform::Error>(())
 //! ```

@@ -237,8 +237,7 @@ fn hold_same(
     own: &Drawn,
     level: f32,
 ) -> usize {
-    let (low, high) = model.mesh().bounds();
-    let most = 1e-6 * low.distance(high) as f32;
+    let most = 1e-6 * model.diagonal() as f32;
     let controls = prepared.controls(model.positions());
     let (known, places) = (reference.by_place(), own.by_place());
     check.hold(places.len() as u64 == own.expected, || {

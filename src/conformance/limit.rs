@@ -326,7 +326,7 @@ fn measure_prepared(
     let ruler = Ruler {
         model,
         right: right(context, model, method, &passes, setup.options)?,
-        unit: diagonal(model.mesh()) * 0.5f64.powi(23),
+        unit: model.diagonal() * 0.5f64.powi(23),
         most: within(method) * 2f64.powi(23),
         most_degrees: method.contract.normals.unwrap_or(0.1),
     };
@@ -421,7 +421,8 @@ fn right(
 /// The surface in f64, with vertex 0 moved by a part of the diagonal.
 fn truth(mesh: &ControlMesh, scheme: Scheme, moved: f64) -> Result<Box<LimitSurface>> {
     let mut positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
-    positions[0][2] += moved * diagonal(mesh);
+    let (low, high) = mesh.bounds();
+    positions[0][2] += moved * low.distance(high);
     let mesh = with_positions(mesh, &positions)?;
     Ok(Box::new(LimitSurface::of_scheme(&mesh, scheme)))
 }
@@ -429,13 +430,8 @@ fn truth(mesh: &ControlMesh, scheme: Scheme, moved: f64) -> Result<Box<LimitSurf
 /// The same for the CPU's twin.
 fn twin(model: &Model, prepared: &Prepared, moved: f64) -> Controls {
     let mut vertices = model.positions();
-    vertices[0].z += (moved * diagonal(model.mesh())) as f32;
+    vertices[0].z += (moved * model.diagonal()) as f32;
     prepared.controls(vertices)
-}
-
-fn diagonal(mesh: &ControlMesh) -> f64 {
-    let (low, high) = mesh.bounds();
-    low.distance(high)
 }
 
 /// The captured vertices with their passes, all or those in nodes of a kind.
@@ -494,7 +490,7 @@ fn has_sure_normal(finer: &LimitSurface, scheme: Scheme, face: u32, uv: [f32; 2]
 struct Ruler<'a> {
     model: &'a Model,
     right: Right,
-    /// A unit in the model's own measure.
+    /// A unit in the model's local ones.
     unit: f64,
     most: f64,
     most_degrees: f64,
@@ -541,7 +537,7 @@ impl Ruler<'_> {
             check.hold(false, || format!("ptex face {ptex} is a hole"));
             return [0.0; 2];
         };
-        let captured = Vec3::from(vertex.position).as_dvec3() + self.model.centre();
+        let captured = Vec3::from(vertex.position).as_dvec3();
         let units = captured.distance(position) / self.unit;
         let degrees = normal.map_or(0.0, |normal| {
             let captured = Vec3::from(vertex.normal).as_dvec3();
@@ -567,8 +563,7 @@ impl Ruler<'_> {
     ) -> (DVec3, Option<DVec3>) {
         let number = vertex.patch_number as usize;
         let twin = pass.evaluate(controls, number, Vec2::from(vertex.uv));
-        let position = twin.position.as_dvec3() + self.model.centre();
-        (position, Some(twin.normal.as_dvec3()))
+        (twin.position.as_dvec3(), Some(twin.normal.as_dvec3()))
     }
 
     /// Position and normal of the truth; no normal where the surface folds or stands still: there f32 has none.
@@ -580,9 +575,12 @@ impl Ruler<'_> {
     ) -> Option<(DVec3, Option<DVec3>)> {
         let [u, v] = uv.map(f64::from);
         let right = truth.evaluate(ptex as usize, u, v)?;
-        let (du, dv) = (right.du.normalize_or_zero(), right.dv.normalize_or_zero());
-        let shortest = right.du.length().min(right.dv.length()) / diagonal(self.model.mesh());
+        let placement = self.model.placement();
+        let [du, dv] = [right.du, right.dv].map(|tangent| tangent / placement.scale);
+        let shortest = du.length().min(dv.length()) / self.model.diagonal();
+        let (du, dv) = (du.normalize_or_zero(), dv.normalize_or_zero());
         let firm = du.cross(dv).length() * shortest > 0.01;
-        Some((right.position, firm.then(|| right.normal())))
+        let position = placement.local(right.position);
+        Some((position, firm.then(|| right.normal())))
     }
 }

@@ -25,9 +25,9 @@ pub struct Counters {
 /// What a frame is drawn with, the same for all of its batches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// From model space, relative to the model's centre, to Vulkan's clip space; column by column.
+    /// From the local units of the model's [`Placement`](crate::mesh::Placement) to Vulkan's clip space; column by column.
     pub clip_from_model: [[f32; 4]; 4],
-    /// The eye in model space.
+    /// The eye in local units.
     pub eye: [f32; 3],
     /// One of `abi::SHADING_...`.
     pub shading: u32,

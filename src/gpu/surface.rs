@@ -267,7 +267,7 @@ impl TessellatedSurface {
         Err(Error::Misuse(Misuse::OtherSurface))
     }
 
-    /// Replaces the control vertices, by positions relative to the model's centre, and what is computed from them; they arrive with the next
+    /// Replaces the control vertices, by positions in local units, and what is computed from them; they arrive with the next
     /// [`cmd_upload`](Self::cmd_upload), which then copies nothing else.
     ///
     /// The staging memory is written at once: no submitted [`cmd_upload`](Self::cmd_upload) may still read it. An engine that computes
@@ -291,7 +291,7 @@ impl TessellatedSurface {
         Ok(())
     }
 
-    /// The control vertices on the device, three floats each, relative to the model's centre: a storage buffer that is also a copy's target.
+    /// The control vertices on the device, three floats each, in local units: a storage buffer that is also a copy's target.
     ///
     /// Whoever writes it waits for earlier frames' vertex and control shaders, and makes the writes visible to `SHADER_READ` in the
     /// vertex, control and evaluation stages before the next draw.

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Place, Result};
+use crate::mesh::placement::{Placement, bounds};
 use crate::mesh::Scheme;
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
@@ -220,12 +221,20 @@ impl ControlMesh {
         }
     }
 
-    /// The least and greatest corner of the control vertices' bounding box.
+    /// The least and greatest corner of the bounding box of the control vertices that faces use.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let first = self.positions.first().copied().unwrap_or(DVec3::ZERO);
-        self.positions
-            .iter()
-            .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)))
+        bounds(self.used_positions())
+    }
+
+    /// Where the mesh lies and how large it is, by the vertices that faces use.
+    pub fn placement(&self) -> Placement {
+        Placement::of(self.used_positions())
+    }
+
+    /// The positions of the vertices that faces use, one for each corner of a face.
+    fn used_positions(&self) -> impl Iterator<Item = DVec3> {
+        let corners = self.face_vertices.iter();
+        corners.map(|&vertex| self.positions[vertex as usize])
     }
 }
 
@@ -273,7 +282,7 @@ impl ControlMeshBuilder {
     ///
     /// # Errors
     /// [`Error::Input`] for a mesh without faces, a face of fewer than three vertices or one that names a vertex twice,
-    /// an index out of range, a position that is not finite, a tag that names no edge, vertex or face of the mesh, and what
+    /// an index out of range, a position that is not finite, one of a face's beyond 1e300, a tag that names no edge, vertex or face of the mesh, and what
     /// the scheme knows nothing of.
     pub fn build(self) -> Result<ControlMesh> {
         let ControlMeshBuilder {
@@ -281,8 +290,8 @@ impl ControlMeshBuilder {
             face_sizes,
         } = self;
         mesh.face_offsets = offsets(&face_sizes, mesh.face_vertices.len())?;
-        check_positions(&mesh)?;
         check_faces(&mesh)?;
+        check_positions(&mesh)?;
         check_tags(&mesh)?;
         mesh.options.scheme.check(&mesh)?;
         Ok(mesh)
@@ -314,27 +323,30 @@ fn offsets(face_sizes: &[u32], vertices: usize) -> Result<Vec<u32>> {
         .collect())
 }
 
-/// How far apart vertices may be: the GPU takes them as f32 relative to the middle, and sums stay below 3.4e38.
-const GREATEST_EXTENT: f64 = 1e36;
+/// The greatest coordinate of a vertex that a face uses: so what is computed from several of them, derivatives too, stays within f64.
+const GREATEST_COORDINATE: f64 = 1e300;
 
 fn check_positions(mesh: &ControlMesh) -> Result<()> {
+    let refused = |vertex: usize, problem: &str, remedy: &str| {
+        let problem = format!("its position {} {problem}", mesh.positions[vertex]);
+        Err(Error::input(Place::Vertex(vertex), problem, remedy))
+    };
     if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        return Err(Error::input(
-            Place::Vertex(vertex),
-            format!("its position {} is not finite", mesh.positions[vertex]),
-            "replace NaN and infinite coordinates by numbers",
-        ));
+        let remedy = "replace NaN and infinite coordinates by numbers";
+        return refused(vertex, "is not finite", remedy);
     }
-    let (low, high) = mesh.bounds();
-    let extent = (high - low).max_element();
-    if extent <= GREATEST_EXTENT {
-        return Ok(());
+    let is_large = |vertex: u32| {
+        let position = mesh.positions[vertex as usize];
+        position.abs().max_element() > GREATEST_COORDINATE
+    };
+    match mesh.face_vertices.iter().find(|&&vertex| is_large(vertex)) {
+        None => Ok(()),
+        Some(&vertex) => refused(
+            vertex as usize,
+            "is beyond what double precision can calculate with",
+            "coordinates go up to 1e300: scale the mesh down",
+        ),
     }
-    Err(Error::input(
-        Place::Mesh,
-        format!("it is {extent:e} across, more than single precision can hold"),
-        "scale it down to 1e36 or less",
-    ))
 }
 
 fn check_faces(mesh: &ControlMesh) -> Result<()> {

@@ -4,6 +4,7 @@ mod builtin;
 mod control_mesh;
 mod model;
 mod obj;
+mod placement;
 mod scheme;
 pub mod sharpness;
 pub mod topology;
@@ -16,5 +17,7 @@ pub use control_mesh::{
 };
 pub use model::Model;
 pub use obj::{read_obj, read_obj_bytes};
+pub use placement::Placement;
+pub(crate) use placement::power_of_two_in;
 pub use scheme::Scheme;
 pub use triangulate::{Triangulation, triangulated};

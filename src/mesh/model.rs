@@ -2,26 +2,29 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::mesh::ControlMesh;
 use crate::mesh::topology::Topology;
+use crate::mesh::{ControlMesh, Placement};
 
 /// A control mesh, its topology, and its positions as the GPU gets them.
 ///
-/// Positions are f32 relative to the middle of the bounding box, so that a small mesh far from the origin loses nothing.
+/// Positions are f32 relative to the mesh's [`Placement`]: whatever its size, and however far it lies from the origin, nothing is lost.
 #[derive(Clone, Debug)]
 pub struct Model {
     mesh: ControlMesh,
     topology: Topology,
-    centre: DVec3,
+    placement: Placement,
 }
+
+/// What is smaller in local positions is zero: it is nothing beside the mesh, and products of it would leave the range of normal floats, which
+/// devices may flush to zero and CPUs do not (Vulkan spec, "Rounding and Denormalization").
+const LEAST: f64 = 1.0 / (1u128 << 100) as f64;
 
 impl Model {
     /// Takes a mesh in.
     pub fn new(mesh: ControlMesh) -> Model {
-        let (low, high) = mesh.bounds();
         Model {
             topology: Topology::new(&mesh),
-            centre: 0.5 * (low + high),
+            placement: mesh.placement(),
             mesh,
         }
     }
@@ -41,17 +44,29 @@ impl Model {
         self.topology.has_surface()
     }
 
-    /// What must be added to positions that come from the GPU.
-    pub fn centre(&self) -> DVec3 {
-        self.centre
+    /// How positions that go to the GPU or come from there relate to those of the mesh.
+    pub fn placement(&self) -> Placement {
+        self.placement
     }
 
-    /// The control vertices relative to the centre. No zero is negative: whatever faces make of one has the same bits.
+    /// The diagonal of the bounding box in local units: 2 to 7, or 0 for a mesh without extent.
+    pub fn diagonal(&self) -> f64 {
+        let (low, high) = self.mesh.bounds();
+        self.placement
+            .local(low)
+            .distance(self.placement.local(high))
+    }
+
+    /// The control vertices in local units, those that no face uses at the origin. No zero is negative: whatever faces make of one has the same
+    /// bits.
     pub fn positions(&self) -> Vec<Vec3> {
-        self.mesh
-            .positions()
-            .iter()
-            .map(|&position| (position - self.centre).as_vec3() + Vec3::ZERO)
-            .collect()
+        let placed = |(vertex, &position): (u32, &DVec3)| {
+            if self.topology.vertex_faces(vertex).is_empty() {
+                return Vec3::ZERO;
+            }
+            let local = self.placement.local(position);
+            DVec3::select(local.abs().cmplt(DVec3::splat(LEAST)), DVec3::ZERO, local).as_vec3()
+        };
+        (0..).zip(self.mesh.positions()).map(placed).collect()
     }
 }

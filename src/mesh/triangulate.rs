@@ -1,5 +1,7 @@
 //! Polygons cut into triangles, for schemes that take nothing else.
 
+use glam::DVec3;
+
 use crate::error::Result;
 use crate::mesh::{ControlMesh, FaceVarying};
 
@@ -25,10 +27,14 @@ pub fn triangulated(mesh: &ControlMesh, how: Triangulation) -> Result<ControlMes
     let mut triangles: Vec<u32> = Vec::new();
     let mut texture: Vec<u32> = Vec::new();
     let mut holes: Vec<u32> = Vec::new();
+    // Of unit size: squares of lengths leave the range of f64 elsewhere.
+    let placement = mesh.placement();
+    let local = |vertex: &u32| placement.local(mesh.positions()[*vertex as usize]);
     for (number, face) in mesh.faces().enumerate() {
         let corners = mesh.corner_range(number);
         let hole = mesh.holes().contains(&(number as u32));
-        for triangle in cut(mesh, face, how) {
+        let points: Vec<DVec3> = face.iter().map(local).collect();
+        for triangle in cut(&points, how) {
             if hole {
                 holes.push((triangles.len() / 3) as u32);
             }
@@ -59,16 +65,15 @@ pub fn triangulated(mesh: &ControlMesh, how: Triangulation) -> Result<ControlMes
     builder.build()
 }
 
-/// The triangles of a face, as numbers of its corners.
-fn cut(mesh: &ControlMesh, face: &[u32], how: Triangulation) -> Vec<[usize; 3]> {
-    let mut rest: Vec<usize> = (0..face.len()).collect();
-    let mut triangles = Vec::with_capacity(face.len() - 2);
+/// The triangles of a face with these corners, as their numbers.
+fn cut(points: &[DVec3], how: Triangulation) -> Vec<[usize; 3]> {
+    let mut rest: Vec<usize> = (0..points.len()).collect();
+    let mut triangles = Vec::with_capacity(points.len() - 2);
     while rest.len() > 3 {
         let n = rest.len();
         let diagonal = |ear: usize| {
             let [a, b] = [rest[(ear + n - 1) % n], rest[(ear + 1) % n]];
-            let position = |corner: usize| mesh.positions()[face[corner] as usize];
-            position(a).distance_squared(position(b))
+            points[a].distance_squared(points[b])
         };
         let ear = match how {
             Triangulation::Fan => 1,

@@ -7,9 +7,9 @@ use crate::method::surface::normalized;
 /// Bumps on a lattice, as high as they say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Displacement {
-    /// The height of the bumps in model units; 0 for no displacement.
+    /// The height of the bumps in local units; 0 for no displacement.
     pub height: f32,
-    /// Bumps a unit of length.
+    /// Bumps a local unit of length.
     pub frequency: f32,
 }
 

@@ -344,7 +344,7 @@ impl Prepared {
         }))
     }
 
-    /// Control vertices, relative to the model's centre, with the points that are computed from them: what [`Pass::evaluate`] needs.
+    /// Control vertices, in local units, with the points that are computed from them: what [`Pass::evaluate`] needs.
     pub fn controls(&self, vertices: Vec<glam::Vec3>) -> Controls {
         Controls {
             points: self.points.compute(&vertices),

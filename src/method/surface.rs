@@ -7,7 +7,7 @@ use crate::abi;
 /// A point of a patch as the evaluation shader computes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfacePoint {
-    /// Position relative to the model's centre.
+    /// Position in the local units of the model's [`Placement`](crate::mesh::Placement).
     pub position: Vec3,
     /// Unit normal; zero where there is none.
     pub normal: Vec3,
@@ -16,7 +16,7 @@ pub struct SurfacePoint {
 /// What patches are evaluated from. [`Prepared::controls`](super::Prepared::controls) makes it.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
-    /// The control vertices relative to the model's centre.
+    /// The control vertices in local units.
     pub vertices: Vec<Vec3>,
     /// What is computed from them beforehand.
     pub points: Vec<abi::Point>,
@@ -25,7 +25,7 @@ pub struct Controls {
 /// A point with its tangents. Twin of `Surface` in `glsl/lib/surface.glsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Surface {
-    /// Position relative to the model's centre.
+    /// Position in the local units of the model's [`Placement`](crate::mesh::Placement).
     pub position: Vec3,
     /// Derivative by u.
     pub du: Vec3,

@@ -3,11 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use crate::mesh::topology::Topology;
-use crate::mesh::{ControlMesh, Scheme};
+use crate::mesh::{ControlMesh, Placement, Scheme, power_of_two_in};
 use crate::patch::bspline;
 use crate::subdivision::cell::SchemeCell;
 use crate::subdivision::limit::{LimitStencil, limit_stencil};
-use crate::subdivision::masks::Blend;
+use crate::subdivision::masks::{Blend, Mask};
 use crate::subdivision::refine::{Refinement, refine, with_neighbours};
 use crate::subdivision::regular::bspline_patch;
 use crate::subdivision::schemes::rings;
@@ -27,10 +27,18 @@ pub struct LimitSample {
 impl LimitSample {
     /// The unit normal, on the side from which the face runs counter-clockwise; zero where the tangents are parallel.
     pub fn normal(&self) -> DVec3 {
-        self.du
-            .normalize_or_zero()
-            .cross(self.dv.normalize_or_zero())
-            .normalize_or_zero()
+        unit(unit(self.du).cross(unit(self.dv)))
+    }
+}
+
+/// Unit length, or zero where there is no direction. Scaled by a power of two first: no square leaves the range of f64, and vectors of every such
+/// scale have the same bits.
+pub(super) fn unit(v: DVec3) -> DVec3 {
+    let greatest = v.abs().max_element();
+    if greatest > 0.0 && greatest.is_finite() {
+        (v / power_of_two_in(greatest)).normalize()
+    } else {
+        DVec3::ZERO
     }
 }
 
@@ -47,6 +55,9 @@ impl LimitSample {
 #[derive(Clone, Debug)]
 pub struct LimitSurface {
     topology: Topology,
+    /// A power of two about as large as the mesh: whatever that is, it then gives the same bits, and nothing over- or underflows.
+    scale: f64,
+    /// Over the scale.
     positions: Vec<DVec3>,
     ptex: Vec<(u32, u32)>,
     scheme: Scheme,
@@ -55,7 +66,9 @@ pub struct LimitSurface {
 /// A face in its surroundings at some level.
 struct Cell {
     topology: Topology,
+    /// Relative to the origin.
     positions: Vec<DVec3>,
+    origin: DVec3,
 }
 
 /// Refinement halves the distance to an extraordinary vertex; after so many halvings nothing of an f64 is left.
@@ -75,6 +88,20 @@ impl LimitSurface {
 
     /// The limit of a topology, such as one that was refined, with a position for each of its vertices.
     pub fn of_topology(topology: Topology, positions: Vec<DVec3>, scheme: Scheme) -> LimitSurface {
+        let is_used = |vertex: usize| !topology.vertex_faces(vertex as u32).is_empty();
+        let used = (0..positions.len()).filter(|&vertex| is_used(vertex));
+        let Placement { scale, .. } = Placement::of(used.map(|vertex| positions[vertex]));
+        let positions = positions.into_iter().map(|p| p / scale).collect();
+        LimitSurface::of_scaled(topology, scale, positions, scheme)
+    }
+
+    /// From positions over a scale.
+    fn of_scaled(
+        topology: Topology,
+        scale: f64,
+        positions: Vec<DVec3>,
+        scheme: Scheme,
+    ) -> LimitSurface {
         let faces = 0..topology.face_count() as u32;
         let ptex = faces.flat_map(|face| {
             let arity = topology.face(face).len();
@@ -84,6 +111,7 @@ impl LimitSurface {
         LimitSurface {
             ptex: ptex.collect(),
             topology,
+            scale,
             positions,
             scheme,
         }
@@ -96,12 +124,12 @@ impl LimitSurface {
         } = refine_all(&self.topology, self.scheme);
         let blend = |mask| DVec3::blend(mask, &self.positions);
         let positions = masks.iter().map(|mask| blend(mask)).collect();
-        LimitSurface::of_topology(topology, positions, self.scheme)
+        LimitSurface::of_scaled(topology, self.scale, positions, self.scheme)
     }
 
-    /// The position of each vertex of the mesh, which is not its limit.
-    pub fn positions(&self) -> &[DVec3] {
-        &self.positions
+    /// The position of a vertex of the mesh, which is not its limit.
+    pub fn position(&self, vertex: u32) -> DVec3 {
+        self.scale * self.positions[vertex as usize]
     }
 
     /// The topology with its final sharpness.
@@ -130,10 +158,15 @@ impl LimitSurface {
             return None;
         }
         let uv = DVec2::new(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
-        Some(match self.scheme {
+        let sample = match self.scheme {
             Scheme::CatmullClark => self.catmull_clark(face, corner, uv),
             Scheme::Bilinear => self.bilinear(face, corner, uv),
             Scheme::Loop | Scheme::Butterfly | Scheme::LoopStam => self.by_rules(face, corner, uv),
+        };
+        Some(LimitSample {
+            position: self.scale * sample.position,
+            du: self.scale * sample.du,
+            dv: self.scale * sample.dv,
         })
     }
 
@@ -150,7 +183,7 @@ impl LimitSurface {
                 return scaled(cell.limit(corner), scale);
             }
             if let Some(sample) = cell.regular(uv) {
-                return scaled(sample, scale);
+                return moved(scaled(sample, scale), cell.origin);
             }
             let corner = nearest_corner(uv);
             cell = cell.child(corner);
@@ -175,12 +208,8 @@ impl LimitSurface {
         }
         let (topology, vertices) = self.topology.excerpt(&faces);
         let position = |&vertex: &u32| self.positions[vertex as usize];
-        let cell = SchemeCell {
-            topology,
-            positions: vertices.iter().map(position).collect(),
-            scheme: self.scheme,
-        };
-        cell.evaluate(corner, uv)
+        let positions = vertices.iter().map(position).collect();
+        SchemeCell::new(topology, positions, self.scheme).evaluate(corner, uv)
     }
 
     fn bilinear(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
@@ -214,12 +243,11 @@ impl LimitSurface {
         let (topology, vertices) = self
             .topology
             .excerpt(&with_neighbours(&self.topology, &[face]));
+        let positions = vertices.iter().map(|&v| self.positions[v as usize]);
         Cell {
             topology,
-            positions: vertices
-                .iter()
-                .map(|&v| self.positions[v as usize])
-                .collect(),
+            positions: positions.collect(),
+            origin: DVec3::ZERO,
         }
     }
 }
@@ -228,25 +256,22 @@ impl Cell {
     /// The child at a corner.
     fn child(&self, corner: u32) -> Cell {
         let refined = refine(&self.topology, &[(0, corner)]);
-        let positions = refined
-            .masks
-            .iter()
-            .map(|mask| DVec3::blend(mask, &self.positions))
-            .collect();
+        let positions = relative(&self.topology, &self.positions);
+        let masks = refined.masks.iter();
         Cell {
             topology: refined.topology,
-            positions,
+            positions: masks.map(|mask| DVec3::blend(mask, &positions)).collect(),
+            origin: self.origin + first_vertex(&self.topology, &self.positions),
         }
     }
 
     /// The limit at a corner, after as many refinements as its sharpness and its faces' arities ask for.
     fn limit(&self, corner: u32) -> LimitSample {
         match limit_stencil(&self.topology, 0, corner) {
-            Some(LimitStencil { position, du, dv }) => LimitSample {
-                position: DVec3::blend(&position, &self.positions),
-                du: DVec3::blend(&du, &self.positions),
-                dv: DVec3::blend(&dv, &self.positions),
-            },
+            Some(stencil) => moved(
+                of_stencil(&stencil, &self.topology, &self.positions),
+                self.origin,
+            ),
             None => scaled(self.child(corner).limit(corner), 2.0),
         }
     }
@@ -255,18 +280,54 @@ impl Cell {
     fn regular(&self, uv: DVec2) -> Option<LimitSample> {
         let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
         let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
-        let mut sample = LimitSample {
-            position: DVec3::ZERO,
-            du: DVec3::ZERO,
-            dv: DVec3::ZERO,
-        };
+        let first = first_vertex(&self.topology, &self.positions);
+        let mut sample = LimitSample::default();
         for (i, point) in patch.points.iter().enumerate() {
             let point = DVec3::blend(&point.mask(), &self.positions);
+            let spoke = point - first;
             sample.position += point * u.value[i % 4] * v.value[i / 4];
-            sample.du += point * u.derivative[i % 4] * v.value[i / 4];
-            sample.dv += point * u.value[i % 4] * v.derivative[i / 4];
+            sample.du += spoke * u.derivative[i % 4] * v.value[i / 4];
+            sample.dv += spoke * u.value[i % 4] * v.derivative[i / 4];
         }
         Some(sample)
+    }
+}
+
+/// The first vertex of face 0. What is computed relative to it, children and tangents, is exact to the last digit however small faces become,
+/// and however far from the origin.
+pub(super) fn first_vertex(topology: &Topology, positions: &[DVec3]) -> DVec3 {
+    positions[topology.face(0)[0] as usize]
+}
+
+/// Positions relative to the first vertex of face 0.
+pub(super) fn relative(topology: &Topology, positions: &[DVec3]) -> Vec<DVec3> {
+    let first = first_vertex(topology, positions);
+    positions.iter().map(|&p| p - first).collect()
+}
+
+/// What a stencil over the vertices of a topology gives: tangents are sums of differences.
+pub(super) fn of_stencil(
+    stencil: &LimitStencil,
+    topology: &Topology,
+    positions: &[DVec3],
+) -> LimitSample {
+    let first = first_vertex(topology, positions);
+    let tangent = |mask: &Mask| {
+        let terms = mask.iter();
+        let spokes = terms.map(|&(vertex, weight)| weight * (positions[vertex as usize] - first));
+        spokes.sum()
+    };
+    LimitSample {
+        position: DVec3::blend(&stencil.position, positions),
+        du: tangent(&stencil.du),
+        dv: tangent(&stencil.dv),
+    }
+}
+
+pub(super) fn moved(sample: LimitSample, by: DVec3) -> LimitSample {
+    LimitSample {
+        position: sample.position + by,
+        ..sample
     }
 }
 

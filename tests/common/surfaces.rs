@@ -13,6 +13,7 @@ pub struct Surfaces {
     pub model: Model,
     pub prepared: Prepared,
     truth: LimitSurface,
+    /// In local units.
     diagonal: f64,
 }
 
@@ -38,7 +39,7 @@ impl Surfaces {
         Surfaces {
             prepared: method.prepare(&model, options).expect("sound options"),
             truth: LimitSurface::new(model.mesh()),
-            diagonal: super::diagonal(model.mesh()),
+            diagonal: model.diagonal(),
             model,
         }
     }
@@ -59,14 +60,16 @@ impl Surfaces {
                     let point = pass.evaluate(&controls, number, Vec2::from(uv));
                     let truth = self.truth.evaluate(patch.ptex as usize, u, v);
                     let truth = truth.expect("patches are no holes");
-                    let position = point.position.as_dvec3() + self.model.centre();
-                    let distance = position.distance(truth.position) / self.diagonal;
+                    let placement = self.model.placement();
+                    let right = placement.local(truth.position);
+                    let distance = point.position.as_dvec3().distance(right) / self.diagonal;
                     // NaN must not pass.
                     if distance > worst.distance || distance.is_nan() {
                         (worst.distance, worst.far) = (distance, (patch.ptex, uv));
                     }
-                    let (du, dv) = (truth.du.normalize_or_zero(), truth.dv.normalize_or_zero());
-                    let shortest = truth.du.length().min(truth.dv.length()) / self.diagonal;
+                    let [du, dv] = [truth.du, truth.dv].map(|tangent| tangent / placement.scale);
+                    let shortest = du.length().min(dv.length()) / self.diagonal;
+                    let (du, dv) = (du.normalize_or_zero(), dv.normalize_or_zero());
                     let angle = point
                         .normal
                         .as_dvec3()

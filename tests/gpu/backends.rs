@@ -188,7 +188,7 @@ fn tags_that_grow_a_little_move_the_surface_a_little() {
     let mesh = builtin("pole-7").expect("built in");
     let model = shapes::under(&mesh, Scheme::Loop).expect("it has no tags");
     let cut = cut(64.0, Spacing::FractionalEven);
-    let diagonal = crate::common::diagonal(model.mesh()) as f32;
+    let diagonal = model.diagonal() as f32;
     {
         let (_, prepared) = drawable(&model, Backend::Tessellator)
             .next()

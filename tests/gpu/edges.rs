@@ -63,7 +63,7 @@ fn displaced_surfaces_move_as_their_twin_says() {
         for cut in cuts {
             loaded.displacement = Displacement::default();
             let smooth = loaded.capture(cut, Fill::Discard).expect("it is drawn");
-            let diagonal = crate::common::diagonal(model.mesh()) as f32;
+            let diagonal = model.diagonal() as f32;
             loaded.displacement = Displacement {
                 height: 0.05 * diagonal,
                 frequency: 20.0 / diagonal,

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use hullform::gpu::Fill;
-use hullform::mesh::{Model, Scheme, builtin};
+use hullform::mesh::{Model, Placement, Scheme, builtin};
 use hullform::method::{METHODS, Method, Prepared, Reproduces, is_on_hexagon};
 use hullform::subdivision::{
     Blend, LimitSurface, Mask, Refinement, deep_limit, is_cusp, refine_all, vertex_limit,
@@ -55,7 +55,8 @@ struct Truth {
     finer: LimitSurface,
     refined: Refinement,
     scheme: Scheme,
-    centre: DVec3,
+    placement: Placement,
+    /// In local units.
     diagonal: f64,
 }
 
@@ -68,8 +69,8 @@ impl Truth {
             surface,
             refined: refine_all(model.topology(), scheme),
             scheme,
-            centre: model.centre(),
-            diagonal: common::diagonal(model.mesh()),
+            placement: model.placement(),
+            diagonal: model.diagonal(),
         }
     }
 
@@ -125,7 +126,7 @@ impl Truth {
         let mut directions = [DVec3::ZERO; 2];
         for (tangent, direction) in [&limit.du, &limit.dv].into_iter().zip(&mut directions) {
             let terms = Mask::blend(tangent, &self.refined.masks);
-            let at = |vertex: u32| self.surface.positions()[vertex as usize] - self.centre;
+            let at = |vertex: u32| self.placement.local(self.surface.position(vertex));
             let sum: DVec3 = terms.iter().map(|&(v, w)| w * at(v)).sum();
             let magnitude: f64 = terms.iter().map(|&(v, w)| (w * at(v)).length()).sum();
             angles += (terms.len() + 2) as f64 * U * magnitude / sum.length();
@@ -156,8 +157,8 @@ impl Truth {
     /// Whether a place is as it should be. Where there is hardly a tangent plane, a normal may be any.
     fn holds(&self, found: &Found, greatest: &mut Greatest) -> bool {
         let right = self.at(found.face, found.place);
-        let position = found.position.as_dvec3() + self.centre;
-        let far = position.distance(right.position) / self.diagonal;
+        let position = self.placement.local(right.position);
+        let far = found.position.as_dvec3().distance(position) / self.diagonal;
         let normal = found.normal.as_dvec3();
         let has_normal = right.normal != DVec3::ZERO && right.turned < 0.01;
         let turned = match has_normal {

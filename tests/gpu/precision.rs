@@ -6,7 +6,6 @@ use hullform::mesh::Model;
 use hullform::method::{Method, Pass, Prepared, Reproduces, to_ptex};
 use hullform::subdivision::{LimitSurface, Scheme};
 
-use crate::common;
 use crate::common::gpu::Frame;
 
 /// The greatest deviations seen: positions over the diagonal, normals in degrees.
@@ -30,7 +29,7 @@ impl Worst {
 /// Against the CPU's twin, every `step`th vertex.
 pub fn from_twin(model: &Model, prepared: &Prepared, frame: &Frame, step: usize) -> Worst {
     let controls = prepared.controls(model.positions());
-    let diagonal = common::diagonal(model.mesh());
+    let diagonal = model.diagonal();
     let mut worst = Worst::default();
     for (pass, vertex) in sampled(prepared, frame, step) {
         let uv = Vec2::from(vertex.uv);
@@ -62,7 +61,7 @@ pub fn from_truth(
         }
     };
     let truth = LimitSurface::of_scheme(model.mesh(), scheme);
-    let diagonal = common::diagonal(model.mesh());
+    let diagonal = model.diagonal();
     let mut worst = Worst::default();
     for (pass, vertex) in sampled(prepared, frame, step) {
         if on_lattice && !pass.is_on_lattice(vertex.uv) {
@@ -72,13 +71,14 @@ pub fn from_truth(
         let [u, v] = to_ptex(patch, vertex.uv).map(f64::from);
         let sample = truth.evaluate(patch.ptex as usize, u, v);
         let sample = sample.expect("holes are not drawn");
-        let position = Vec3::from(vertex.position).as_dvec3() + model.centre();
+        let position = Vec3::from(vertex.position).as_dvec3();
+        let right = model.placement().local(sample.position);
         let angle = if on_lattice {
             0.0
         } else {
             degrees(vertex.normal, sample.normal())
         };
-        worst.add(position.distance(sample.position) / diagonal, angle);
+        worst.add(position.distance(right) / diagonal, angle);
     }
     worst
 }

@@ -10,7 +10,7 @@ use hullform::method::{DepthTags, Outline};
 pub enum Adaptive {
     /// The distance from the eye: the full level up to this many units of the model, or up to the nearest control vertex, and half of it at
     /// twice the distance.
-    Distance(Option<f32>),
+    Distance(Option<f64>),
     /// The picture: segments of at most so many pixels.
     Screen(f32),
     /// The curvature: segments whose ends' normals differ by at most so many degrees.
@@ -28,15 +28,15 @@ impl FromStr for Adaptive {
     fn from_str(text: &str) -> Result<Adaptive, Self::Err> {
         let (name, number) = match text.split_once(':') {
             None => (text, None),
-            Some((name, number)) => match number.parse::<f32>() {
+            Some((name, number)) => match number.parse::<f64>() {
                 Ok(number) if number.is_finite() && number > 0.0 => (name, Some(number)),
                 _ => return Err("expected a number greater than 0 after the colon"),
             },
         };
         match name {
             "distance" => Ok(Adaptive::Distance(number)),
-            "screen" => Ok(Adaptive::Screen(number.unwrap_or(PIXELS))),
-            "curvature" => Ok(Adaptive::Curvature(number.unwrap_or(DEGREES))),
+            "screen" => Ok(Adaptive::Screen(number.map_or(PIXELS, |number| number as f32))),
+            "curvature" => Ok(Adaptive::Curvature(number.map_or(DEGREES, |number| number as f32))),
             _ => Err("expected distance[:UNITS], screen[:PIXELS] or curvature[:DEGREES]"),
         }
     }
@@ -45,22 +45,25 @@ impl FromStr for Adaptive {
 /// From where tags are seen.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// From the model, relative to its centre, to clip space.
+    /// From local units to clip space.
     pub clip_from_model: Mat4,
-    /// The eye in model space.
+    /// The eye in local units.
     pub eye: Vec3,
+    /// A local unit in units of the model.
+    pub scale: f64,
     /// The picture's size in pixels.
     pub size: [f32; 2],
 }
 
 impl Adaptive {
-    /// The tags of control vertices; `level` is the greatest level.
+    /// The tags of control vertices in local units; `level` is the greatest level.
     pub fn tags(self, outline: &Outline, vertices: &[Vec3], level: f32, seen: Seen) -> DepthTags {
         match self {
             Adaptive::Distance(near) => {
                 let distances = vertices.iter().map(|vertex| vertex.distance(seen.eye));
                 let nearest = distances.fold(f32::INFINITY, f32::min);
-                let near = near.unwrap_or(nearest).max(f32::MIN_POSITIVE);
+                let near = near.map_or(nearest, |near| (near / seen.scale) as f32);
+                let near = near.clamp(f32::MIN_POSITIVE, f32::MAX);
                 DepthTags::by_distance(vertices, seen.eye, near, level.log2())
             }
             Adaptive::Screen(pixels) => {

@@ -70,10 +70,9 @@ fn why(model: &Model) -> String {
 fn farthest(model: &Model, prepared: &Prepared) -> f64 {
     let limit = LimitSurface::new(model.mesh());
     let faces = limit.ptex_count();
-    let truth = Reference::Truth(Box::new(limit));
+    let truth = Reference::Truth(Box::new(limit), model.placement());
     let drawn = Reference::Method(Box::new(Twin::new(model, prepared.clone())));
-    let (low, high) = model.mesh().bounds();
-    let diagonal = low.distance(high).max(f64::MIN_POSITIVE);
+    let diagonal = model.diagonal().max(f64::MIN_POSITIVE);
     let tried = (0..faces).step_by(faces.div_ceil(FACES).max(1));
     let distances = tried.flat_map(|face| {
         let (truth, drawn) = (&truth, &drawn);

@@ -116,6 +116,7 @@ fn add_patches(
 ) {
     let prepared = drawing.surface().prepared();
     let pass = &prepared.passes[batch.pass()];
+    let placement = model.placement();
     for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {
         let number = vertices[0].patch_number;
         let patch = &pass.patches[number as usize];
@@ -130,7 +131,9 @@ fn add_patches(
         surface.points.extend(vertices.iter().map(|vertex| Point {
             face: patch.ptex,
             uv: to_ptex(patch, vertex.uv),
-            position: (Vec3::from(vertex.position).as_dvec3() + model.centre()).to_array(),
+            position: placement
+                .position(Vec3::from(vertex.position).as_dvec3())
+                .to_array(),
             normal: vertex.normal,
             texture: pass.texture_coordinates(number as usize, vertex.uv),
         }));

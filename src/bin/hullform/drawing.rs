@@ -155,6 +155,7 @@ impl<'a> Drawing<'a> {
         let seen = Seen {
             clip_from_model: view.clip_from_model(),
             eye: view.eye(),
+            scale: model.placement().scale,
             size,
         };
         let outline = &self.surface().prepared().outline;

@@ -373,8 +373,7 @@ fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
 
 /// Bumps as high as a share of the model's diagonal, a few dozen of them along it.
 fn bumps(model: &Model, share: f32) -> Displacement {
-    let (low, high) = model.mesh().bounds();
-    let diagonal = low.distance(high) as f32;
+    let diagonal = model.diagonal() as f32;
     Displacement {
         height: share * diagonal,
         frequency: 30.0 / diagonal.max(f32::MIN_POSITIVE),

@@ -160,7 +160,7 @@ fn compare_prepared(
     };
     let bench = context.bench()?;
     let mut loaded = bench.load(model, prepared, &workarounds, options)?;
-    loaded.view.displacement = bumps(model.mesh(), setup.displacement);
+    loaded.view.displacement = bumps(model, setup.displacement);
     let mut compared = Compared::default();
     for cut in cuts {
         compared.add(compare_cut(context, model, &mut loaded, cut, setup.only)?);
@@ -232,9 +232,8 @@ fn options(context: &Context, prepared: &Prepared, cuts: &[Cut], drawn: Drawn) -
 }
 
 /// Bumps of a height, a share of the diagonal, and twenty along the diagonal.
-fn bumps(mesh: &ControlMesh, share: f64) -> Displacement {
-    let (low, high) = mesh.bounds();
-    let diagonal = low.distance(high).max(f64::MIN_POSITIVE);
+fn bumps(model: &Model, share: f64) -> Displacement {
+    let diagonal = model.diagonal().max(f64::from(f32::MIN_POSITIVE));
     Displacement {
         height: (share * diagonal) as f32,
         frequency: (20.0 / diagonal) as f32,

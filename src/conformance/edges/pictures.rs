@@ -221,7 +221,7 @@ fn picture(
         .bench()?
         .load(&model, prepared, &workarounds, options)?;
     aim(&mut loaded, &model, wider * scene.window, scene.closed);
-    loaded.view.displacement = bumps(mesh, moved.displacement);
+    loaded.view.displacement = bumps(&model, moved.displacement);
     loaded.picture(cut)
 }
 

@@ -68,7 +68,7 @@ fn worst(model: &Model, level: u32, stride: u32) -> f64 {
     let prepared = METHOD.prepare(model, options).expect("tables cover it");
     let truth = LimitSurface::new(model.mesh());
     let controls = prepared.controls(model.positions());
-    let (low, high) = model.mesh().bounds();
+    let diagonal = model.diagonal();
     let n = 1u32 << level;
     let mut samples = Vec::new();
     for pass in &prepared.passes {
@@ -88,7 +88,8 @@ fn worst(model: &Model, level: u32, stride: u32) -> f64 {
         let right = truth.evaluate(record.ptex as usize, u, v);
         let right = right.expect("holes are not drawn").position;
         let own = pass.evaluate(&controls, patch, Vec2::from(uv));
-        (own.position.as_dvec3() + model.centre()).distance(right) / low.distance(high)
+        let right = model.placement().local(right);
+        own.position.as_dvec3().distance(right) / diagonal
     });
     off.reduce(
         || 0.0,

@@ -41,10 +41,10 @@ pub fn models() -> Vec<Model> {
         .collect()
 }
 
-/// The faces by their numbers, relative to the model's centre. A vertex has the sum of the cross products at all corners there.
+/// The faces by their numbers, in local units. A vertex has the sum of the cross products at all corners there.
 fn faces(model: &Model) -> Vec<Face> {
     let mesh = model.mesh();
-    let at = |vertex: u32| mesh.positions()[vertex as usize] - model.centre();
+    let at = |vertex: u32| model.placement().local(mesh.positions()[vertex as usize]);
     let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
     for face in mesh.faces() {
         for (i, &vertex) in face.iter().enumerate() {
@@ -72,7 +72,7 @@ pub fn worst(
     let mut compared = 0;
     for model in models() {
         let faces = faces(&model);
-        let (low, high) = model.mesh().bounds();
+        let diagonal = model.diagonal();
         let prepared = method.prepare(&model, PlanOptions::default());
         let prepared = prepared.expect("all of its faces are whole");
         let controls = prepared.controls(model.positions());
@@ -86,7 +86,7 @@ pub fn worst(
                 for uv in places(corners) {
                     let point = pass.evaluate(&controls, number, uv);
                     let (position, normal) = right(face, uv.to_array().map(f64::from));
-                    let off = point.position.as_dvec3().distance(position) / low.distance(high);
+                    let off = point.position.as_dvec3().distance(position) / diagonal;
                     let angle = point.normal.as_dvec3().angle_between(normal);
                     // A sum of normals that nearly vanishes has no direction in f32.
                     let angle = if normal.length() > 0.01 { angle } else { 0.0 };

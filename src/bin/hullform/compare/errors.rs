@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec2};
-use hullform::mesh::Model;
+use hullform::mesh::{Model, Placement};
 use hullform::method::{Controls, Pass, Prepared, from_ptex};
 use hullform::subdivision::LimitSurface;
 use indicatif::ProgressBar;
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use crate::output::{Point, Surface};
 
-/// Position and unit normal; the normal is zero where there is none.
+/// Position in local units and unit normal; the normal is zero where there is none.
 pub type Sample = (DVec3, DVec3);
 
 /// A point of a ptex face, by its bits.
@@ -20,8 +20,8 @@ type Key = (u32, [u32; 2]);
 
 /// What methods are compared with.
 pub enum Reference {
-    /// The limit in f64.
-    Truth(Box<LimitSurface>),
+    /// The limit in f64, and where its mesh lies.
+    Truth(Box<LimitSurface>, Placement),
     /// Another method, by its twin on the CPU: it can be asked at any point, wherever its own tessellator puts vertices.
     Method(Box<Twin>),
 }
@@ -30,7 +30,6 @@ pub enum Reference {
 pub struct Twin {
     prepared: Prepared,
     controls: Controls,
-    centre: DVec3,
     /// Pass and patch of each part of each ptex face.
     patches: HashMap<u32, Vec<(usize, usize)>>,
 }
@@ -50,7 +49,6 @@ impl Twin {
         Twin {
             patches,
             controls: prepared.controls(model.positions()),
-            centre: model.centre(),
             prepared,
         }
     }
@@ -71,19 +69,18 @@ impl Twin {
 }
 
 impl Reference {
-    /// Position and normal at a point of a ptex face; None where there is no surface.
+    /// Position in local units and normal at a point of a ptex face; None where there is no surface.
     pub fn evaluate(&self, face: u32, uv: [f32; 2]) -> Option<Sample> {
         match self {
-            Reference::Truth(limit) => {
+            Reference::Truth(limit, placement) => {
                 let [u, v] = uv.map(f64::from);
                 let sample = limit.evaluate(face as usize, u, v)?;
-                Some((sample.position, sample.normal()))
+                Some((placement.local(sample.position), sample.normal()))
             }
             Reference::Method(twin) => {
                 let (pass, patch, uv) = twin.find(face, uv)?;
                 let sample = pass.evaluate(&twin.controls, patch, Vec2::from(uv));
-                let position = sample.position.as_dvec3() + twin.centre;
-                Some((position, sample.normal.as_dvec3()))
+                Some((sample.position.as_dvec3(), sample.normal.as_dvec3()))
             }
         }
     }
@@ -143,13 +140,16 @@ pub struct Errors {
 
 impl Errors {
     /// Compares all points of a surface with what is known there.
-    pub fn new(surface: &Surface, known: &Known, diagonal: f64) -> Errors {
+    pub fn new(surface: &Surface, known: &Known, model: &Model) -> Errors {
+        // A model without extent has only errors of nothing.
+        let diagonal = model.diagonal().max(f64::MIN_POSITIVE);
+        let local = |point: &Point| model.placement().local(point.position.into());
         let samples: Vec<Option<Sample>> = surface.points.iter().map(|p| known.sample(p)).collect();
         let pairs = || surface.points.iter().zip(&samples);
         let positions: Vec<Option<f64>> = pairs()
             .map(|(point, sample)| {
                 let (position, _) = sample.as_ref()?;
-                Some(DVec3::from(point.position).distance(*position) / diagonal)
+                Some(local(point).distance(*position) / diagonal)
             })
             .collect();
         let normals: Vec<Option<f64>> = pairs()
@@ -158,7 +158,8 @@ impl Errors {
                 angle(DVec3::from(point.normal.map(f64::from)), *normal)
             })
             .collect();
-        let areas = areas(surface);
+        let points: Vec<DVec3> = surface.points.iter().map(local).collect();
+        let areas = areas(&points, &surface.triangles);
         Errors {
             position: Summary::new(&positions, &areas),
             normal: Summary::new(&normals, &areas),
@@ -177,10 +178,10 @@ fn angle(a: DVec3, b: DVec3) -> Option<f64> {
 }
 
 /// A third of each triangle's area for each of its points.
-fn areas(surface: &Surface) -> Vec<f64> {
-    let mut areas = vec![0.0; surface.points.len()];
-    for triangle in &surface.triangles {
-        let [a, b, c] = triangle.map(|i| DVec3::from(surface.points[i as usize].position));
+fn areas(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<f64> {
+    let mut areas = vec![0.0; points.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
         let share = (b - a).cross(c - a).length() / 6.0;
         for &point in triangle {
             areas[point as usize] += share;

@@ -209,7 +209,10 @@ fn patches(prepared: &Prepared) -> usize {
 
 fn reference(model: &Model, against: Option<Chosen>) -> Result<Reference> {
     Ok(match against {
-        None => Reference::Truth(Box::new(LimitSurface::new(model.mesh()))),
+        None => {
+            let limit = Box::new(LimitSurface::new(model.mesh()));
+            Reference::Truth(limit, model.placement())
+        }
         Some(chosen) => {
             let prepared = chosen.prepare(model)?;
             Reference::Method(Box::new(Twin::new(model, prepared)))
@@ -235,16 +238,10 @@ fn measure(
     Ok(Column {
         chosen,
         patches,
-        errors: Errors::new(&surface, known, diagonal(model)),
+        errors: Errors::new(&surface, known, model),
         surface,
         seconds: None,
     })
-}
-
-/// The diagonal of the bounding box; a model without extent has only errors of nothing.
-fn diagonal(model: &Model) -> f64 {
-    let (low, high) = model.mesh().bounds();
-    low.distance(high).max(f64::MIN_POSITIVE)
 }
 
 /// The scales of positions and normals, one for all methods so that they compare.

@@ -66,9 +66,9 @@ pub fn draw_map(
     drawn.check()
 }
 
-/// A point relative to the model's centre, as drawing has it.
+/// A point in local units, as drawing has it.
 pub fn local(model: &Model, point: &Point) -> Vec3 {
-    (glam::DVec3::from(point.position) - model.centre()).as_vec3()
+    model.placement().local(point.position.into()).as_vec3()
 }
 
 /// The share of a colour that is left, by how much the surface turns away. Without a normal all of it.

@@ -5,9 +5,6 @@
 
 #include "lib/bspline.glsl"
 
-// 2^exponent, exactly.
-float power_of_two(int exponent) { return intBitsToFloat((127 + exponent) << 23); }
-
 vec4 infinitely_sharp(vec4 b) {
     precise vec4 sharp = vec4(0.0, b.y + 2.0 * b.x, b.z - b.x, b.w);
     return sharp;

@@ -28,7 +28,7 @@ void displace(inout vec3 position, inout vec3 normal) {
     precise float along = (gradient.x * normal.x + gradient.y * normal.y) + gradient.z * normal.z;
     precise vec3 tilted = normal - (gradient - along * normal);
     position = moved;
-    normal = normalize_or_zero(tilted);
+    normal = unit(tilted);
 }
 
 // The crack amplifier of VK-GL-CTS: where the bits of a position are odd in number, the vertex moves by a fiftieth of the picture. If faces

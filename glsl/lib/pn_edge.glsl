@@ -15,12 +15,11 @@ vec3 edge_point(Point a, Point b) {
 
 // The control point of the quadratic between two corners (section 3.3): the mean normal, mirrored at the plane across the edge.
 vec3 edge_normal(Point a, Point b) {
-    precise vec3 along = b.position - a.position;
+    precise vec3 apart = b.position - a.position;
+    vec3 along = unit(apart);
     precise vec3 sum = a.normal + b.normal;
-    float square = exact_dot(along, along);
-    precise float share = square > 0.0 ? 2.0 * exact_dot(along, sum) / square : 0.0;
-    precise vec3 mirrored = sum - share * along;
-    return normalize_or_zero(mirrored);
+    precise vec3 mirrored = sum - (2.0 * exact_dot(along, sum)) * along;
+    return unit(mirrored);
 }
 
 #endif

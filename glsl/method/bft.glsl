@@ -112,7 +112,7 @@ Point summed(uint number, Shares shares) {
         if ((face.normals & TABLE_TANGENTS) != 0u) point.normal = limit_normal(other, shares);
         else point.normal = weighted(other, shares).normal;
     }
-    point.normal = direction(point.normal);
+    point.normal = unit(point.normal);
     return point;
 }
 

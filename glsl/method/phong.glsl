@@ -29,7 +29,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 weights = corner_weights(uv);
     vec3 flat_point = sum_of_three(weights, in_point[0], in_point[1], in_point[2]);
     vec3 bent = sum_of_three(weights, projected(flat_point, 0u), projected(flat_point, 1u), projected(flat_point, 2u));
-    return Point(towards(flat_point, bent), direction(sum_of_three(weights, in_point[3], in_point[4], in_point[5])));
+    return Point(towards(flat_point, bent), unit(sum_of_three(weights, in_point[3], in_point[4], in_point[5])));
 }
 #endif
 

@@ -27,7 +27,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec4 weights = quad_weights(uv);
     vec3 flat_point = sum_of_four(weights, in_point[0], in_point[1], in_point[2], in_point[3]);
     vec3 bent = sum_of_four(weights, projected(flat_point, 0u), projected(flat_point, 1u), projected(flat_point, 2u), projected(flat_point, 3u));
-    return Point(towards(flat_point, bent), direction(sum_of_four(weights, in_point[4], in_point[5], in_point[6], in_point[7])));
+    return Point(towards(flat_point, bent), unit(sum_of_four(weights, in_point[4], in_point[5], in_point[6], in_point[7])));
 }
 #endif
 

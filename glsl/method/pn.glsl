@@ -61,7 +61,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     precise vec3 position = (corners + 3.0 * around) + inside;
     precise vec3 normal = sum_of_three(squares, in_point[NORMALS], in_point[NORMALS + 1u], in_point[NORMALS + 2u]) +
                           sum_of_three(pairs, in_point[BETWEEN], in_point[BETWEEN + 1u], in_point[BETWEEN + 2u]);
-    return Point(position, direction(normal));
+    return Point(position, unit(normal));
 }
 #endif
 

@@ -100,7 +100,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     precise vec3 inside = (9.0 * middle) * sum_of_points(INSIDE, quad_weights(uv));
     precise vec3 position = (sum_of_points(0u, corner_cubes) + 3.0 * around) + inside;
     precise vec3 normal = (sum_of_points(NORMALS, corner_squares) + sum_of_points(BETWEEN, edge_squares)) + middle * in_point[CENTRE];
-    return Point(position, direction(normal));
+    return Point(position, unit(normal));
 }
 #endif
 

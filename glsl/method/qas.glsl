@@ -44,7 +44,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 w = corner_weights(uv);
     precise vec3 squares = w * w;
     precise vec3 pairs = w * w.yzx;
-    return Point(quadratic(0u, squares, pairs), direction(quadratic(6u, squares, pairs)));
+    return Point(quadratic(0u, squares, pairs), unit(quadratic(6u, squares, pairs)));
 }
 #endif
 

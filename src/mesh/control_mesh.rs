@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Place, Result};
-use crate::mesh::placement::{Placement, bounds};
 use crate::mesh::Scheme;
+use crate::mesh::placement::{Placement, bounds};
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
 pub const INFINITE_SHARPNESS: f32 = 10.0;

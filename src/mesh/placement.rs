@@ -102,7 +102,10 @@ mod tests {
                 assert!((0.5..=2.0).contains(&size), "{low}..{high}: {local}");
                 assert_eq!(placement.position(local), corner, "{low}..{high}");
                 let by_matrix = placement.matrix().transform_point3(local);
-                assert!(by_matrix.distance(corner) <= 1e-15 * (high - low), "{low}..{high}");
+                assert!(
+                    by_matrix.distance(corner) <= 1e-15 * (high - low),
+                    "{low}..{high}"
+                );
             }
         }
         let point = Placement::of([DVec3::ONE]);

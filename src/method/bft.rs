@@ -26,8 +26,9 @@ use crate::abi::{self, TableFace, TablePlace};
 use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
-use crate::method::surface::{Controls, Surface, SurfacePoint, normalized};
+use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::triangles::corner_weights;
+use crate::method::unit::unit;
 use crate::method::{
     Contract, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals, TableOptions,
 };
@@ -281,7 +282,7 @@ fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     };
     SurfacePoint {
         position,
-        normal: normalized(normal) + Vec3::ZERO,
+        normal: unit(normal),
     }
 }
 

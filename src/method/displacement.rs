@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::method::surface::normalized;
+use crate::method::unit::unit;
 
 /// Bumps on a lattice, as high as they say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ impl Displacement {
         let along = (gradient.x * normal.x + gradient.y * normal.y) + gradient.z * normal.z;
         (
             position + (self.height * height) * normal,
-            normalized(normal - (gradient - along * normal)),
+            unit(normal - (gradient - along * normal)),
         )
     }
 }

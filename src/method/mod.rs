@@ -61,6 +61,7 @@ mod quadtree;
 mod surface;
 mod tags;
 mod triangles;
+mod unit;
 mod vertices;
 
 use glam::Vec2;

@@ -1,6 +1,6 @@
 //! The edges and faces of the control mesh, to which the edges of patches belong: levels that go by them agree on both sides of each.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
 use crate::abi;
@@ -58,18 +58,20 @@ impl Outline {
 
     /// Unit normals of the vertices: of the faces around each, by their areas.
     pub(super) fn normals(&self, vertices: &[Vec3]) -> Vec<Vec3> {
-        let mut normals = vec![Vec3::ZERO; vertices.len()];
+        // In f64 products of floats stay within its range.
+        let mut normals = vec![DVec3::ZERO; vertices.len()];
         for face in self.faces() {
-            let at = |i: usize| vertices[face[i % face.len()] as usize];
+            let at = |i: usize| vertices[face[i % face.len()] as usize].as_dvec3();
             // Twice the area as a vector, whatever the polygon (Newell).
-            let area = (0..face.len()).fold(Vec3::ZERO, |sum, i| {
+            let area = (0..face.len()).fold(DVec3::ZERO, |sum, i| {
                 sum + (at(i) - at(0)).cross(at(i + 1) - at(0))
             });
             for &vertex in face {
                 normals[vertex as usize] += area;
             }
         }
-        normals.into_iter().map(Vec3::normalize_or_zero).collect()
+        let unit = |normal: DVec3| normal.normalize_or_zero().as_vec3();
+        normals.into_iter().map(unit).collect()
     }
 }
 

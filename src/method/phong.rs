@@ -8,8 +8,9 @@ use glam::{Vec2, Vec3};
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::quads::{quad_weights, sum_of_four};
-use crate::method::surface::{Controls, SurfacePoint, normalized};
+use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
+use crate::method::unit::unit;
 use crate::method::vertices::{self, control_points};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
@@ -70,7 +71,7 @@ fn bent<const N: usize>(
         std::array::from_fn(|i| flat - (flat - corners[i]).dot(normals[i]) * normals[i]);
     SurfacePoint {
         position: (1.0 - SHARE) * flat + SHARE * mean(projected),
-        normal: normalized(mean(normals)) + Vec3::ZERO,
+        normal: unit(mean(normals)),
     }
 }
 

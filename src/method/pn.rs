@@ -9,8 +9,9 @@ use glam::{Vec2, Vec3};
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
 use crate::method::quads::{quad_weights, sum_of_four};
-use crate::method::surface::{Controls, SurfacePoint, normalized};
+use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
+use crate::method::unit::unit;
 use crate::method::vertices::{self, control_points};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
@@ -54,14 +55,8 @@ fn edge_point(a: Vec3, b: Vec3, normal: Vec3) -> Vec3 {
 
 /// The control point of the quadratic between two corners (section 3.3): the mean normal, mirrored at the plane across the edge.
 fn edge_normal(a: Vec3, b: Vec3, na: Vec3, nb: Vec3) -> Vec3 {
-    let (along, sum) = (b - a, na + nb);
-    let square = along.dot(along);
-    let share = if square > 0.0 {
-        2.0 * along.dot(sum) / square
-    } else {
-        0.0
-    };
-    normalized(sum - share * along)
+    let (along, sum) = (unit(b - a), na + nb);
+    unit(sum - (2.0 * along.dot(sum)) * along)
 }
 
 fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
@@ -82,7 +77,7 @@ fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoi
     let normal = sum_of_three(w.map(|w| w * w), n) + sum_of_three(pairs, between);
     SurfacePoint {
         position: (corners + 3.0 * around) + inside,
-        normal: normalized(normal) + Vec3::ZERO,
+        normal: unit(normal),
     }
 }
 
@@ -134,7 +129,7 @@ fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
         + (pair_u * pair_v) * centre;
     SurfacePoint {
         position: (corners + 3.0 * around) + inside,
-        normal: normalized(normal) + Vec3::ZERO,
+        normal: unit(normal),
     }
 }
 

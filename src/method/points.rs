@@ -1,14 +1,15 @@
 //! Points that are computed from the control vertices before patches are drawn: limits, vertices of the next level, vertex normals.
 //!
 //! Each point has rows: lists of weighted vertices, made once a topology. A mesh that moves only applies them again, here with all cores, or
-//! in `glsl/points.comp`, of which this is the twin. Both give the same bits: sums run in the order of the terms, and unit vectors are made
-//! by additions and multiplications alone, which Vulkan wants correctly rounded (Vulkan spec, "Precision of Individual Operations"), where
-//! square roots are not.
+//! in `glsl/points.comp`, of which this is the twin. Both give the same bits: sums run in the order of the terms, and directions are made
+//! as `unit.rs` tells. Control vertices may be any floats; of subnormal ones, and of those that lie more than 2^100 times as far apart as others of
+//! their row, bits are not promised.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
+use crate::method::unit::{self, Scaled, unit};
 use crate::subdivision::Mask;
 
 /// How points are computed, step by step.
@@ -122,7 +123,7 @@ impl Points {
                 ..before
             },
             abi::POINTS_LIMIT => {
-                let (du, dv) = (sum(|term| term.du), sum(|term| term.dv));
+                let [du, dv] = tangents(terms, vertices);
                 let normal = unit(unit(du).cross(unit(dv)));
                 Point {
                     position: sum(|term| term.position).to_array(),
@@ -131,18 +132,19 @@ impl Points {
             }
             abi::POINTS_RING => {
                 let middle = position(&terms[0]);
-                let spokes: Vec<Vec3> = terms[1..]
+                let spokes: Vec<Scaled> = terms[1..]
                     .iter()
-                    .map(|term| position(term) - middle)
+                    .map(|term| unit::difference(position(term), middle))
                     .collect();
                 let faces = spokes
                     .len()
                     .saturating_sub(usize::from(row.count & abi::ROW_OPEN != 0));
-                let normal = (0..faces).fold(Vec3::ZERO, |sum, i| {
-                    sum + spokes[i].cross(spokes[(i + 1) % spokes.len()])
+                let normal = (0..faces).fold(Scaled::default(), |sum, i| {
+                    let face = unit::cross(spokes[i], spokes[(i + 1) % spokes.len()]);
+                    unit::sum(sum, face)
                 });
                 Point {
-                    normal: unit(normal).to_array(),
+                    normal: unit(normal.vector).to_array(),
                     ..before
                 }
             }
@@ -157,6 +159,28 @@ impl Points {
             }
         }
     }
+}
+
+/// Two tangents, of any length. Where sums leave the range of floats, vertices are scaled first.
+fn tangents(terms: &[PointTerm], vertices: &[Vec3]) -> [Vec3; 2] {
+    let scaled = |factor: f32| {
+        let mut tangents = [Vec3::ZERO; 2];
+        for term in terms {
+            let vertex = factor * vertices[term.source as usize];
+            tangents[0] += term.du * vertex;
+            tangents[1] += term.dv * vertex;
+        }
+        tangents
+    };
+    let tangents = scaled(1.0);
+    if tangents.into_iter().all(unit::is_firm) {
+        return tangents;
+    }
+    let sizes = terms
+        .iter()
+        .map(|term| vertices[term.source as usize].abs());
+    let greatest = sizes.fold(0.0, |greatest: f32, v| greatest.max(v.max_element()));
+    scaled(unit::factor_for(greatest))
 }
 
 fn term(source: u32, position: f64, du: f64, dv: f64) -> PointTerm {
@@ -191,46 +215,9 @@ fn joined(masks: [&Mask; 3]) -> Vec<PointTerm> {
         .collect()
 }
 
-/// Unit length, or zero where there is no direction, by additions and multiplications alone. Twin of `unit` in `glsl/lib/unit.glsl`.
-pub(super) fn unit(v: Vec3) -> Vec3 {
-    // The power of two in the greatest element, and what brings it to 1..2; both are exact.
-    let exponent = v.abs().max_element().to_bits() & 0x7f80_0000;
-    if exponent == 0 || exponent >= 254 << 23 {
-        return Vec3::ZERO;
-    }
-    let scaled = v * f32::from_bits((254 << 23) - exponent);
-    let square = scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z;
-    // Newton's method for 1 / sqrt, which doubles the digits in each step; the first guess has four bits.
-    let mut inverse = f32::from_bits(0x5f37_59df - (square.to_bits() >> 1));
-    for _ in 0..4 {
-        inverse *= 1.5 - (0.5 * square) * (inverse * inverse);
-    }
-    scaled * inverse
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn unit_vectors_have_unit_length() {
-        for scale in [1e-30, 1e-3, 1.0, 7e5, 1e30] {
-            for v in [
-                Vec3::X,
-                Vec3::new(1.0, -2.0, 3.0),
-                Vec3::new(-1e-6, 1.0, 1.9),
-            ] {
-                let unit = unit(scale * v).as_dvec3();
-                assert!(
-                    (unit.length() - 1.0).abs() < 3e-7,
-                    "{scale} {v}: {}",
-                    unit.length()
-                );
-                assert!(unit.distance(v.as_dvec3().normalize()) < 3e-7);
-            }
-        }
-        assert_eq!(unit(Vec3::ZERO), Vec3::ZERO);
-    }
 
     #[test]
     fn rings_have_the_normal_of_their_plane() {

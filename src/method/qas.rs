@@ -12,8 +12,9 @@ use glam::{Vec2, Vec3};
 use crate::abi;
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
-use crate::method::surface::{Controls, SurfacePoint, normalized};
+use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
+use crate::method::unit::unit;
 use crate::method::vertices::{self, control_points};
 use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces, patches};
 use crate::tessellation::Domain;
@@ -60,7 +61,7 @@ fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let (p, n): ([Vec3; 6], [Vec3; 6]) = control_points(pass, given, patch);
     SurfacePoint {
         position: quadratic(p, uv),
-        normal: normalized(quadratic(n, uv)) + Vec3::ZERO,
+        normal: unit(quadratic(n, uv)),
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::abi;
+use crate::method::unit::unit;
 
 /// A point of a patch as the evaluation shader computes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,7 +37,7 @@ pub(super) struct Surface {
 impl Surface {
     /// The unit normal, as `glsl/lib/surface.glsl` computes it; zero where the tangents are parallel. No zero is negative.
     pub fn normal(&self) -> Vec3 {
-        normalized(normalized(self.du).cross(normalized(self.dv))) + Vec3::ZERO
+        unit(unit(self.du).cross(unit(self.dv)))
     }
 
     /// The point with the normal that its tangents give.
@@ -45,15 +46,5 @@ impl Surface {
             position: self.position,
             normal: self.normal(),
         }
-    }
-}
-
-/// Unit length, or zero where there is no direction. Scaled first, so that no square leaves the range of floats.
-pub(super) fn normalized(v: Vec3) -> Vec3 {
-    let greatest = v.abs().max_element();
-    if greatest == 0.0 {
-        Vec3::ZERO
-    } else {
-        (v / greatest).normalize()
     }
 }

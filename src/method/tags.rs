@@ -32,7 +32,10 @@ impl DepthTags {
 
     /// View-dependent, by the distance from the eye: `greatest` up to the distance `near`, and one less whenever the distance doubles.
     pub fn by_distance(vertices: &[Vec3], eye: Vec3, near: f32, greatest: f32) -> DepthTags {
-        let farther = |vertex: &Vec3| (vertex.distance(eye) / near).max(1.0).log2();
+        let farther = |vertex: &Vec3| {
+            let distance = vertex.as_dvec3().distance(eye.as_dvec3());
+            (distance / f64::from(near)).max(1.0).log2() as f32
+        };
         DepthTags::new(vertices.iter().map(|vertex| greatest - farther(vertex)))
     }
 

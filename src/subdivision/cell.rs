@@ -90,8 +90,9 @@ impl SchemeCell {
 
     /// Where a corner goes. Among faces of both kinds it may be off its limit by as much as a face is wide, so it takes as many halvings again.
     fn settled(&self, corner: u32) -> DVec3 {
-        let at =
-            |cell: &SchemeCell| cell.origin + cell.positions[cell.topology.face(0)[corner as usize] as usize];
+        let at = |cell: &SchemeCell| {
+            cell.origin + cell.positions[cell.topology.face(0)[corner as usize] as usize]
+        };
         if self.scheme == Scheme::Butterfly {
             return at(self);
         }

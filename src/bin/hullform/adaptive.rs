@@ -35,8 +35,12 @@ impl FromStr for Adaptive {
         };
         match name {
             "distance" => Ok(Adaptive::Distance(number)),
-            "screen" => Ok(Adaptive::Screen(number.map_or(PIXELS, |number| number as f32))),
-            "curvature" => Ok(Adaptive::Curvature(number.map_or(DEGREES, |number| number as f32))),
+            "screen" => Ok(Adaptive::Screen(
+                number.map_or(PIXELS, |number| number as f32),
+            )),
+            "curvature" => Ok(Adaptive::Curvature(
+                number.map_or(DEGREES, |number| number as f32),
+            )),
             _ => Err("expected distance[:UNITS], screen[:PIXELS] or curvature[:DEGREES]"),
         }
     }

@@ -128,14 +128,16 @@ fn add_patches(
             .into_iter()
             .map(|triangle| triangle.map(|i| first + i));
         surface.triangles.extend(triangles);
-        surface.points.extend(vertices.iter().map(|vertex| Point {
-            face: patch.ptex,
-            uv: to_ptex(patch, vertex.uv),
-            position: placement
-                .position(Vec3::from(vertex.position).as_dvec3())
-                .to_array(),
-            normal: vertex.normal,
-            texture: pass.texture_coordinates(number as usize, vertex.uv),
+        surface.points.extend(vertices.iter().map(|vertex| {
+            Point {
+                face: patch.ptex,
+                uv: to_ptex(patch, vertex.uv),
+                position: placement
+                    .position(Vec3::from(vertex.position).as_dvec3())
+                    .to_array(),
+                normal: vertex.normal,
+                texture: pass.texture_coordinates(number as usize, vertex.uv),
+            }
         }));
     }
 }

@@ -26,41 +26,18 @@ void blend(PointRow row, uint number) {
     points[number].position = position;
 }
 
-struct Tangents {
-    vec3 du;
-    vec3 dv;
-};
-
-// Two tangents, times a power of two.
-Tangents scaled_tangents(PointRow row, float factor) {
+void limit(PointRow row, uint number) {
+    precise vec3 position = vec3(0.0);
     precise vec3 du = vec3(0.0);
     precise vec3 dv = vec3(0.0);
     for (uint i = 0u; i < row.count; ++i) {
         PointTerm term = terms[row.first + i];
-        precise vec3 vertex = factor * positions[term.source];
+        vec3 vertex = positions[term.source];
+        position = position + term.position * vertex;
         du = du + term.du * vertex;
         dv = dv + term.dv * vertex;
     }
-    return Tangents(du, dv);
-}
-
-// Two tangents, of any length. Where sums leave the range of floats, vertices are scaled first.
-Tangents tangents_of(PointRow row) {
-    Tangents tangents = scaled_tangents(row, 1.0);
-    if (is_firm(tangents.du) && is_firm(tangents.dv)) return tangents;
-    uint greatest = 0u;
-    for (uint i = 0u; i < row.count; ++i) greatest = max(greatest, greatest_exponent(positions[terms[row.first + i].source]));
-    return scaled_tangents(row, factor_for(greatest));
-}
-
-void limit(PointRow row, uint number) {
-    precise vec3 position = vec3(0.0);
-    for (uint i = 0u; i < row.count; ++i) {
-        PointTerm term = terms[row.first + i];
-        position = position + term.position * positions[term.source];
-    }
-    Tangents tangents = tangents_of(row);
-    points[number] = Point(position, unit(exact_cross(unit(tangents.du), unit(tangents.dv))));
+    points[number] = Point(position, unit(exact_cross(unit(du), unit(dv))));
 }
 
 // Of an open ring there is no face between the last and the first.
@@ -68,14 +45,14 @@ void ring(PointRow row, uint number) {
     uint spokes = (row.count & ~ROW_OPEN) - 1u;
     uint faces = (row.count & ROW_OPEN) != 0u ? max(spokes, 1u) - 1u : spokes;
     vec3 middle = points[terms[row.first].source].position;
-    Scaled normal = Scaled(vec3(0.0), 0);
+    precise vec3 normal = vec3(0.0);
     for (uint i = 0u; i < faces; ++i) {
         uint next = i + 1u < spokes ? i + 1u : 0u;
-        Scaled a = difference(points[terms[row.first + 1u + i].source].position, middle);
-        Scaled b = difference(points[terms[row.first + 1u + next].source].position, middle);
-        normal = scaled_sum(normal, scaled_cross(a, b));
+        precise vec3 a = points[terms[row.first + 1u + i].source].position - middle;
+        precise vec3 b = points[terms[row.first + 1u + next].source].position - middle;
+        normal = normal + exact_cross(a, b);
     }
-    points[number].normal = unit(normal.vector);
+    points[number].normal = unit(normal);
 }
 
 void normals(PointRow row, uint number) {

@@ -1,15 +1,15 @@
 //! Points that are computed from the control vertices before patches are drawn: limits, vertices of the next level, vertex normals.
 //!
 //! Each point has rows: lists of weighted vertices, made once a topology. A mesh that moves only applies them again, here with all cores, or
-//! in `glsl/points.comp`, of which this is the twin. Both give the same bits: sums run in the order of the terms, and directions are made
-//! as `unit.rs` tells. Control vertices may be any floats; of subnormal ones, and of those that lie more than 2^100 times as far apart as others of
-//! their row, bits are not promised.
+//! in `glsl/points.comp`, of which this is the twin. Both give the same bits: sums run in the order of the terms, and unit vectors are made
+//! by additions and multiplications alone, which Vulkan wants correctly rounded (Vulkan spec, "Precision of Individual Operations"), where
+//! square roots are not.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
-use crate::method::unit::{self, Scaled, unit};
+use crate::method::unit::unit;
 use crate::subdivision::Mask;
 
 /// How points are computed, step by step.
@@ -123,7 +123,7 @@ impl Points {
                 ..before
             },
             abi::POINTS_LIMIT => {
-                let [du, dv] = tangents(terms, vertices);
+                let (du, dv) = (sum(|term| term.du), sum(|term| term.dv));
                 let normal = unit(unit(du).cross(unit(dv)));
                 Point {
                     position: sum(|term| term.position).to_array(),
@@ -132,19 +132,18 @@ impl Points {
             }
             abi::POINTS_RING => {
                 let middle = position(&terms[0]);
-                let spokes: Vec<Scaled> = terms[1..]
+                let spokes: Vec<Vec3> = terms[1..]
                     .iter()
-                    .map(|term| unit::difference(position(term), middle))
+                    .map(|term| position(term) - middle)
                     .collect();
                 let faces = spokes
                     .len()
                     .saturating_sub(usize::from(row.count & abi::ROW_OPEN != 0));
-                let normal = (0..faces).fold(Scaled::default(), |sum, i| {
-                    let face = unit::cross(spokes[i], spokes[(i + 1) % spokes.len()]);
-                    unit::sum(sum, face)
+                let normal = (0..faces).fold(Vec3::ZERO, |sum, i| {
+                    sum + spokes[i].cross(spokes[(i + 1) % spokes.len()])
                 });
                 Point {
-                    normal: unit(normal.vector).to_array(),
+                    normal: unit(normal).to_array(),
                     ..before
                 }
             }
@@ -159,28 +158,6 @@ impl Points {
             }
         }
     }
-}
-
-/// Two tangents, of any length. Where sums leave the range of floats, vertices are scaled first.
-fn tangents(terms: &[PointTerm], vertices: &[Vec3]) -> [Vec3; 2] {
-    let scaled = |factor: f32| {
-        let mut tangents = [Vec3::ZERO; 2];
-        for term in terms {
-            let vertex = factor * vertices[term.source as usize];
-            tangents[0] += term.du * vertex;
-            tangents[1] += term.dv * vertex;
-        }
-        tangents
-    };
-    let tangents = scaled(1.0);
-    if tangents.into_iter().all(unit::is_firm) {
-        return tangents;
-    }
-    let sizes = terms
-        .iter()
-        .map(|term| vertices[term.source as usize].abs());
-    let greatest = sizes.fold(0.0, |greatest: f32, v| greatest.max(v.max_element()));
-    scaled(unit::factor_for(greatest))
 }
 
 fn term(source: u32, position: f64, du: f64, dv: f64) -> PointTerm {

@@ -5,9 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::mesh::Scheme;
 use crate::mesh::topology::Topology;
 use crate::patch::{boxspline, bspline};
-use crate::subdivision::limit_surface::{
-    LimitSample, first_vertex, moved, nearest_corner, of_stencil, relative, scaled,
-};
+use crate::subdivision::limit::LimitStencil;
+use crate::subdivision::limit_surface::{LimitSample, nearest_corner, scaled};
 use crate::subdivision::masks::Blend;
 use crate::subdivision::regular::bspline_patch;
 use crate::subdivision::schemes::vertex_limit;
@@ -16,26 +15,15 @@ use crate::subdivision::{Refinement, box_spline_patch};
 
 /// A face, number 0 of a topology with all that its limit depends on.
 pub(super) struct SchemeCell {
-    topology: Topology,
-    /// Relative to the origin.
-    positions: Vec<DVec3>,
-    origin: DVec3,
-    scheme: Scheme,
+    pub topology: Topology,
+    pub positions: Vec<DVec3>,
+    pub scheme: Scheme,
 }
 
 /// After so many halvings a face is flat to the last digit of an f64, while differences of its corners still have half their digits.
 const DEEPEST: u32 = 26;
 
 impl SchemeCell {
-    pub fn new(topology: Topology, positions: Vec<DVec3>, scheme: Scheme) -> SchemeCell {
-        SchemeCell {
-            topology,
-            positions,
-            origin: DVec3::ZERO,
-            scheme,
-        }
-    }
-
     /// The limit at (u, v) of the face; of its ptex face at `corner` when it is neither triangle nor quad.
     pub fn evaluate(mut self, corner: u32, mut uv: DVec2) -> LimitSample {
         if !self.scheme.is_whole(self.topology.face(0).len()) {
@@ -48,7 +36,7 @@ impl SchemeCell {
                 return scaled(self.limit(corner, DEEPEST - depth), scale);
             }
             if let Some(sample) = self.regular(uv) {
-                return moved(scaled(sample, scale), self.origin);
+                return scaled(sample, scale);
             }
             let (child, inside, turn) = descend(triangle, uv);
             self = self.child(child);
@@ -62,12 +50,10 @@ impl SchemeCell {
         let Refinement {
             topology, masks, ..
         } = refine_child(&self.topology, self.scheme, child);
-        let positions = relative(&self.topology, &self.positions);
-        let blend = |mask| DVec3::blend(mask, &positions);
+        let blend = |mask| DVec3::blend(mask, &self.positions);
         SchemeCell {
             topology,
             positions: masks.iter().map(|mask| blend(mask)).collect(),
-            origin: self.origin + first_vertex(&self.topology, &self.positions),
             scheme: self.scheme,
         }
     }
@@ -75,9 +61,14 @@ impl SchemeCell {
     /// The limit at a corner. Where no mask is known after so many more refinements, tangents are the edges there, in error by about 2^-26 or whatever
     /// else the scheme's modes contract to.
     fn limit(&self, corner: u32, levels: u32) -> LimitSample {
-        if let Some(stencil) = vertex_limit(&self.topology, self.scheme, 0, corner) {
-            let sample = of_stencil(&stencil, &self.topology, &self.positions);
-            return moved(sample, self.origin);
+        if let Some(LimitStencil { position, du, dv }) =
+            vertex_limit(&self.topology, self.scheme, 0, corner)
+        {
+            return LimitSample {
+                position: DVec3::blend(&position, &self.positions),
+                du: DVec3::blend(&du, &self.positions),
+                dv: DVec3::blend(&dv, &self.positions),
+            };
         }
         if levels == 0 {
             return LimitSample {
@@ -90,9 +81,8 @@ impl SchemeCell {
 
     /// Where a corner goes. Among faces of both kinds it may be off its limit by as much as a face is wide, so it takes as many halvings again.
     fn settled(&self, corner: u32) -> DVec3 {
-        let at = |cell: &SchemeCell| {
-            cell.origin + cell.positions[cell.topology.face(0)[corner as usize] as usize]
-        };
+        let at =
+            |cell: &SchemeCell| cell.positions[cell.topology.face(0)[corner as usize] as usize];
         if self.scheme == Scheme::Butterfly {
             return at(self);
         }
@@ -113,7 +103,7 @@ impl SchemeCell {
             _ => (along(3, 2), along(0, 3)),
         };
         LimitSample {
-            position: self.origin + points[corner as usize],
+            position: points[corner as usize],
             du,
             dv,
         }
@@ -139,11 +129,10 @@ impl SchemeCell {
     /// The face's polynomial at (u, v), where the scheme has one.
     fn regular(&self, uv: DVec2) -> Option<LimitSample> {
         let mut sum = LimitSample::default();
-        let first = first_vertex(&self.topology, &self.positions);
         let mut add = |point: DVec3, value: f64, du: f64, dv: f64| {
             sum.position += value * point;
-            sum.du += du * (point - first);
-            sum.dv += dv * (point - first);
+            sum.du += du * point;
+            sum.dv += dv * point;
         };
         match self.scheme {
             Scheme::Butterfly | Scheme::Bilinear => return None,
@@ -249,8 +238,11 @@ mod tests {
             }
             DVec3::new(scatter(3 * i), scatter(3 * i + 1), scatter(3 * i + 2))
         };
-        let positions = vertices.iter().map(position).collect();
-        SchemeCell::new(topology, positions, Scheme::Loop)
+        SchemeCell {
+            topology,
+            positions: vertices.iter().map(position).collect(),
+            scheme: Scheme::Loop,
+        }
     }
 
     /// Distance of the positions and angle of the normals of a mask at corner 0 and of refinement. Elsewhere than at sharp vertices sixteen levels show the normal: of more, rounding

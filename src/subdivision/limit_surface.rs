@@ -7,7 +7,7 @@ use crate::mesh::{ControlMesh, Placement, Scheme, power_of_two_in};
 use crate::patch::bspline;
 use crate::subdivision::cell::SchemeCell;
 use crate::subdivision::limit::{LimitStencil, limit_stencil};
-use crate::subdivision::masks::{Blend, Mask};
+use crate::subdivision::masks::Blend;
 use crate::subdivision::refine::{Refinement, refine, with_neighbours};
 use crate::subdivision::regular::bspline_patch;
 use crate::subdivision::schemes::rings;
@@ -33,7 +33,7 @@ impl LimitSample {
 
 /// Unit length, or zero where there is no direction. Scaled by a power of two first: no square leaves the range of f64, and vectors of every such
 /// scale have the same bits.
-pub(super) fn unit(v: DVec3) -> DVec3 {
+fn unit(v: DVec3) -> DVec3 {
     let greatest = v.abs().max_element();
     if greatest > 0.0 && greatest.is_finite() {
         (v / power_of_two_in(greatest)).normalize()
@@ -66,9 +66,7 @@ pub struct LimitSurface {
 /// A face in its surroundings at some level.
 struct Cell {
     topology: Topology,
-    /// Relative to the origin.
     positions: Vec<DVec3>,
-    origin: DVec3,
 }
 
 /// Refinement halves the distance to an extraordinary vertex; after so many halvings nothing of an f64 is left.
@@ -91,7 +89,12 @@ impl LimitSurface {
         let is_used = |vertex: usize| !topology.vertex_faces(vertex as u32).is_empty();
         let used = (0..positions.len()).filter(|&vertex| is_used(vertex));
         let Placement { scale, .. } = Placement::of(used.map(|vertex| positions[vertex]));
-        let positions = positions.into_iter().map(|p| p / scale).collect();
+        // A vertex that no face uses may be anywhere, and has no say.
+        let scaled = |(vertex, position): (usize, DVec3)| match is_used(vertex) {
+            true => position / scale,
+            false => DVec3::ZERO,
+        };
+        let positions = positions.into_iter().enumerate().map(scaled).collect();
         LimitSurface::of_scaled(topology, scale, positions, scheme)
     }
 
@@ -127,7 +130,7 @@ impl LimitSurface {
         LimitSurface::of_scaled(topology, self.scale, positions, self.scheme)
     }
 
-    /// The position of a vertex of the mesh, which is not its limit.
+    /// The position of a vertex of the mesh, which is not its limit; the origin for one that no face uses.
     pub fn position(&self, vertex: u32) -> DVec3 {
         self.scale * self.positions[vertex as usize]
     }
@@ -183,7 +186,7 @@ impl LimitSurface {
                 return scaled(cell.limit(corner), scale);
             }
             if let Some(sample) = cell.regular(uv) {
-                return moved(scaled(sample, scale), cell.origin);
+                return scaled(sample, scale);
             }
             let corner = nearest_corner(uv);
             cell = cell.child(corner);
@@ -208,8 +211,12 @@ impl LimitSurface {
         }
         let (topology, vertices) = self.topology.excerpt(&faces);
         let position = |&vertex: &u32| self.positions[vertex as usize];
-        let positions = vertices.iter().map(position).collect();
-        SchemeCell::new(topology, positions, self.scheme).evaluate(corner, uv)
+        let cell = SchemeCell {
+            topology,
+            positions: vertices.iter().map(position).collect(),
+            scheme: self.scheme,
+        };
+        cell.evaluate(corner, uv)
     }
 
     fn bilinear(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
@@ -243,11 +250,12 @@ impl LimitSurface {
         let (topology, vertices) = self
             .topology
             .excerpt(&with_neighbours(&self.topology, &[face]));
-        let positions = vertices.iter().map(|&v| self.positions[v as usize]);
         Cell {
             topology,
-            positions: positions.collect(),
-            origin: DVec3::ZERO,
+            positions: vertices
+                .iter()
+                .map(|&v| self.positions[v as usize])
+                .collect(),
         }
     }
 }
@@ -256,22 +264,25 @@ impl Cell {
     /// The child at a corner.
     fn child(&self, corner: u32) -> Cell {
         let refined = refine(&self.topology, &[(0, corner)]);
-        let positions = relative(&self.topology, &self.positions);
-        let masks = refined.masks.iter();
+        let positions = refined
+            .masks
+            .iter()
+            .map(|mask| DVec3::blend(mask, &self.positions))
+            .collect();
         Cell {
             topology: refined.topology,
-            positions: masks.map(|mask| DVec3::blend(mask, &positions)).collect(),
-            origin: self.origin + first_vertex(&self.topology, &self.positions),
+            positions,
         }
     }
 
     /// The limit at a corner, after as many refinements as its sharpness and its faces' arities ask for.
     fn limit(&self, corner: u32) -> LimitSample {
         match limit_stencil(&self.topology, 0, corner) {
-            Some(stencil) => moved(
-                of_stencil(&stencil, &self.topology, &self.positions),
-                self.origin,
-            ),
+            Some(LimitStencil { position, du, dv }) => LimitSample {
+                position: DVec3::blend(&position, &self.positions),
+                du: DVec3::blend(&du, &self.positions),
+                dv: DVec3::blend(&dv, &self.positions),
+            },
             None => scaled(self.child(corner).limit(corner), 2.0),
         }
     }
@@ -280,54 +291,18 @@ impl Cell {
     fn regular(&self, uv: DVec2) -> Option<LimitSample> {
         let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
         let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
-        let first = first_vertex(&self.topology, &self.positions);
-        let mut sample = LimitSample::default();
+        let mut sample = LimitSample {
+            position: DVec3::ZERO,
+            du: DVec3::ZERO,
+            dv: DVec3::ZERO,
+        };
         for (i, point) in patch.points.iter().enumerate() {
             let point = DVec3::blend(&point.mask(), &self.positions);
-            let spoke = point - first;
             sample.position += point * u.value[i % 4] * v.value[i / 4];
-            sample.du += spoke * u.derivative[i % 4] * v.value[i / 4];
-            sample.dv += spoke * u.value[i % 4] * v.derivative[i / 4];
+            sample.du += point * u.derivative[i % 4] * v.value[i / 4];
+            sample.dv += point * u.value[i % 4] * v.derivative[i / 4];
         }
         Some(sample)
-    }
-}
-
-/// The first vertex of face 0. What is computed relative to it, children and tangents, is exact to the last digit however small faces become,
-/// and however far from the origin.
-pub(super) fn first_vertex(topology: &Topology, positions: &[DVec3]) -> DVec3 {
-    positions[topology.face(0)[0] as usize]
-}
-
-/// Positions relative to the first vertex of face 0.
-pub(super) fn relative(topology: &Topology, positions: &[DVec3]) -> Vec<DVec3> {
-    let first = first_vertex(topology, positions);
-    positions.iter().map(|&p| p - first).collect()
-}
-
-/// What a stencil over the vertices of a topology gives: tangents are sums of differences.
-pub(super) fn of_stencil(
-    stencil: &LimitStencil,
-    topology: &Topology,
-    positions: &[DVec3],
-) -> LimitSample {
-    let first = first_vertex(topology, positions);
-    let tangent = |mask: &Mask| {
-        let terms = mask.iter();
-        let spokes = terms.map(|&(vertex, weight)| weight * (positions[vertex as usize] - first));
-        spokes.sum()
-    };
-    LimitSample {
-        position: DVec3::blend(&stencil.position, positions),
-        du: tangent(&stencil.du),
-        dv: tangent(&stencil.dv),
-    }
-}
-
-pub(super) fn moved(sample: LimitSample, by: DVec3) -> LimitSample {
-    LimitSample {
-        position: sample.position + by,
-        ..sample
     }
 }
 

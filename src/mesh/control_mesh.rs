@@ -324,7 +324,10 @@ fn offsets(face_sizes: &[u32], vertices: usize) -> Result<Vec<u32>> {
 }
 
 /// The greatest coordinate of a vertex that a face uses: so what is computed from several of them, derivatives too, stays within f64.
-const GREATEST_COORDINATE: f64 = 1e300;
+pub(crate) const GREATEST_COORDINATE: f64 = 1e300;
+
+/// The greatest texture coordinate of a face's corner: what is interpolated between two of them stays within f32.
+pub(crate) const GREATEST_TEXTURE_COORDINATE: f64 = 1e30;
 
 fn check_positions(mesh: &ControlMesh) -> Result<()> {
     let refused = |vertex: usize, problem: &str, remedy: &str| {
@@ -452,13 +455,20 @@ fn check_texture(mesh: &ControlMesh) -> Result<()> {
         format!("texture index {index} is out of range, there are {values} texture coordinates")
     } else if let Some(value) = texture.values.iter().find(|value| !value.is_finite()) {
         format!("the texture coordinate {value} is not finite")
+    } else if let Some(value) = texture
+        .indices
+        .iter()
+        .map(|&index| texture.values[index as usize])
+        .find(|value| value.abs().max_element() > GREATEST_TEXTURE_COORDINATE)
+    {
+        format!("the texture coordinate {value} is beyond what single precision can interpolate")
     } else {
         return Ok(());
     };
     Err(Error::input(
         Place::Mesh,
         problem,
-        "give one finite texture coordinate for every face corner",
+        "give one texture coordinate of at most 1e30 for every face corner",
     ))
 }
 

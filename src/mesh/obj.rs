@@ -13,6 +13,7 @@ mod tags;
 use std::path::Path;
 
 use crate::error::{Error, Place, Result};
+use crate::mesh::control_mesh::{GREATEST_COORDINATE, GREATEST_TEXTURE_COORDINATE};
 use crate::mesh::{ControlMesh, FaceVarying};
 use glam::DVec2;
 use lines::Line;
@@ -101,6 +102,7 @@ fn assemble(name: &str, scan: &Scan, read: &tobj::Mesh) -> Result<ControlMesh> {
         let problem = format!("it finds {} vertices", positions.len());
         return Err(disagreement(Place::File(name.to_string()), problem));
     }
+    check_range(name, scan, read)?;
     let mut builder = ControlMesh::builder(positions, sizes, indices).options(scan.tags.options);
     for &(_, crease) in &scan.tags.creases {
         builder = builder.crease(crease.vertices[0], crease.vertices[1], crease.sharpness);
@@ -125,6 +127,38 @@ fn assemble(name: &str, scan: &Scan, read: &tobj::Mesh) -> Result<ControlMesh> {
     builder
         .build()
         .map_err(|error| with_line(name, scan, error))
+}
+
+/// Refuses what [`ControlMesh`] would refuse too, by the line where it stands.
+fn check_range(name: &str, scan: &Scan, read: &tobj::Mesh) -> Result<()> {
+    let used = |indices: &[u32], values: &[f64], width: usize, greatest: f64| {
+        let faces = indices.get(opening_size(scan)..).unwrap_or_default();
+        let is_large = |&&index: &&u32| {
+            let value = &values[width * index as usize..][..width];
+            value.iter().any(|x| x.abs() > greatest)
+        };
+        faces.iter().find(is_large).map(|&index| index as usize)
+    };
+    let at = |number: usize, problem: &str, remedy: &str| {
+        Err(Line { file: name, number }.error(problem, remedy))
+    };
+    if let Some(vertex) = used(&read.indices, &read.positions, 3, GREATEST_COORDINATE) {
+        return at(
+            scan.vertex_lines[vertex],
+            "a coordinate is beyond what double precision can calculate with",
+            "coordinates go up to 1e300: scale the mesh down",
+        );
+    }
+    let greatest = GREATEST_TEXTURE_COORDINATE;
+    let texture = || used(&read.texcoord_indices, &read.texcoords, 2, greatest);
+    match scan.textured.then(texture).flatten() {
+        None => Ok(()),
+        Some(texture) => at(
+            scan.texture_lines[texture],
+            "a texture coordinate is beyond what single precision can interpolate",
+            "texture coordinates go up to 1e30",
+        ),
+    }
 }
 
 /// The arity of each face as `tobj` read it, compared with what the scan counted.

@@ -15,7 +15,9 @@ pub(super) struct Scan {
     /// The checked `v`, `vt` and `f` statements, one a line, without comments.
     pub geometry: String,
     pub vertices: usize,
+    pub vertex_lines: Vec<usize>,
     pub textures: usize,
+    pub texture_lines: Vec<usize>,
     pub face_sizes: Vec<u32>,
     pub face_lines: Vec<usize>,
     /// Whether every corner of every face has a texture coordinate.
@@ -121,6 +123,7 @@ impl Scan {
             self.warn_once(line, "v", "the fourth value, a weight, is ignored");
         }
         self.vertices += 1;
+        self.vertex_lines.push(line.number);
         self.keep("v", &[x, y, z]);
         Ok(())
     }
@@ -143,6 +146,7 @@ impl Scan {
         }
         let read = |i: usize| words.get(i).copied().filter(|_| finite).unwrap_or("0");
         self.textures += 1;
+        self.texture_lines.push(line.number);
         self.keep("vt", &[read(0), read(1)]);
         Ok(())
     }

@@ -80,7 +80,8 @@ fn same_twins(one: ControlMesh, other: ControlMesh) -> Result<(), TestCaseError>
     let [a, b] = vertices
         .each_ref()
         .map(|all| all.iter().map(|&p| bits(p)).collect::<Vec<_>>());
-    prop_assert_eq!(a, b);
+    // The last vertex of the other is one that no face uses.
+    prop_assert_eq!(&a[..], &b[..a.len()]);
     for method in METHODS.iter().filter(|m| m.check_model(&models[0]).is_ok()) {
         let prepared = models.each_ref().map(|model| {
             let prepared = method.prepare(model, MethodOptions::default());
@@ -175,7 +176,8 @@ fn a_mesh_without_extent_has_a_place() {
     assert!(model.positions().iter().all(|&p| p == Vec3::ZERO));
     let sample = LimitSurface::new(model.mesh()).evaluate(0, 0.3, 0.7);
     let sample = sample.expect("no hole");
-    assert!(sample.position.distance(at) <= 1e-15 * 1e200);
+    // A sum of dozens of equal positions rounds in its last digits.
+    assert!((sample.position - at).abs().max_element() <= 64.0 * f64::EPSILON * 1e200);
     assert_eq!(sample.normal(), DVec3::ZERO);
 }
 

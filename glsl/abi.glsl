@@ -38,8 +38,14 @@ const uint POINTS_LIMIT = 1u;
 const uint POINTS_RING = 2u;
 // Step of points: normals are sums of weighted normals of other points.
 const uint POINTS_NORMALS = 3u;
+// Kind of a step: normals from tangents, where a point has none yet.
+const uint POINTS_SPARE = 4u;
+// Kind of a step: normals from tangents nearby, where a point's own is none, or another.
+const uint POINTS_NEARBY = 5u;
 // Row flag: the ring of faces is open, its first and last vertex belong to one face each.
 const uint ROW_OPEN = 2147483648u;
+// Row flag: tangents that are nearly parallel give no normal.
+const uint ROW_FIRM = 1073741824u;
 // Invocations of a workgroup of the shader that computes points.
 const uint POINT_INVOCATIONS = 64u;
 // Invocations of a control shader that runs stencils; also its greatest number of control points.
@@ -56,14 +62,18 @@ const uint USE_FLIPPED = 1u;
 const uint USE_FIRST_HALF = 2u;
 // Use flag: the patch has the second half of the edge.
 const uint USE_SECOND_HALF = 4u;
-// Use flag: limit position and tangents of a vertex.
+// Use flag: limit position and normal of a vertex.
 const uint USE_LIMIT = 8u;
 // Use flag: the limit has several normals there.
 const uint USE_CREASED = 64u;
 // Use flag: by how many quarters its frame is turned against the patch's; two bits.
 const uint USE_TURN_SHIFT = 4u;
+// Use flag: where the vertex's pair of tangents cancels, the next pair is taken.
+const uint USE_SPARE = 128u;
+// Use flag: the vertex has no tangents for the face, only those nearby.
+const uint USE_CUSP = 256u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-const uint USE_SIDE_SHIFT = 8u;
+const uint USE_SIDE_SHIFT = 9u;
 // Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
 const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.
@@ -192,6 +202,8 @@ struct Border {
     uint plain_count;
     // The points that a patch needs in the ring at level 0..=10.
     uint counts[11];
+    // At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_PLAN`.
+    uint nearby[4];
 };
 
 // A point that is computed from control vertices.
@@ -206,7 +218,7 @@ struct Point {
 struct PointRow {
     // Its first term.
     uint first;
-    // How many terms, and `ROW_OPEN`.
+    // How many terms, and `ROW_...` flags.
     uint count;
 };
 

@@ -5,6 +5,7 @@
 // A step of computing points from the control vertices, a point an invocation. Twin of `method/points.rs`.
 
 #include "abi.glsl"
+#include "lib/tangents.glsl"
 #include "lib/unit.glsl"
 
 layout(local_size_x = POINT_INVOCATIONS) in;
@@ -26,33 +27,78 @@ void blend(PointRow row, uint number) {
     points[number].position = position;
 }
 
-void limit(PointRow row, uint number) {
-    precise vec3 position = vec3(0.0);
+// The square of the least sine between the tangents of a firm row, and of how far a normal may be from that nearby, if it is to stay.
+const float FIRM = 0.00390625;
+const float NEAR = 0.25;
+
+// The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
+// they are small beside the model. Zero where rounding may have made it.
+vec3 tangent_normal(PointRow row) {
+    uint count = row.count & ~(ROW_OPEN | ROW_FIRM);
+    vec3 origin = count > 0u ? positions[terms[row.first + count - 1u].source] : vec3(0.0);
     precise vec3 du = vec3(0.0);
     precise vec3 dv = vec3(0.0);
-    for (uint i = 0u; i < row.count; ++i) {
+    precise vec2 spread = vec2(0.0);
+    precise vec2 total = vec2(0.0);
+    for (uint i = 0u; i < count; ++i) {
         PointTerm term = terms[row.first + i];
-        vec3 vertex = positions[term.source];
-        position = position + term.position * vertex;
-        du = du + term.du * vertex;
-        dv = dv + term.dv * vertex;
+        precise vec3 spoke = positions[term.source] - origin;
+        vec2 size = abs(vec2(term.du, term.dv));
+        du = du + term.du * spoke;
+        dv = dv + term.dv * spoke;
+        spread = spread + size * reach(spoke);
+        total = total + size;
     }
-    points[number] = Point(position, unit(exact_cross(unit(du), unit(dv))));
+    precise float roundings = float(count) + 4.0;
+    precise vec2 errors = ROUNDING * (roundings * spread + reach(origin) * total);
+    if (!span_plane(Tangents(du, dv, errors))) return vec3(0.0);
+    vec3 normal = exact_cross(unit(du), unit(dv));
+    precise float square = (normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z;
+    if ((row.count & ROW_FIRM) != 0u && square < FIRM) return vec3(0.0);
+    return unit(normal);
 }
 
-// Of an open ring there is no face between the last and the first.
+void limit(PointRow row, uint number) {
+    uint count = row.count & ~(ROW_OPEN | ROW_FIRM);
+    blend(PointRow(row.first, count), number);
+    points[number].normal = tangent_normal(row);
+}
+
+// Where there is no normal yet.
+void spare(PointRow row, uint number) {
+    if (points[number].normal == vec3(0.0)) points[number].normal = tangent_normal(row);
+}
+
+// Where the normal is none, or far from that nearby.
+void nearby(PointRow row, uint number) {
+    vec3 beside = tangent_normal(row);
+    vec3 own = points[number].normal;
+    precise vec3 apart = own - beside;
+    precise float square = (apart.x * apart.x + apart.y * apart.y) + apart.z * apart.z;
+    bool near = own != vec3(0.0) && square < NEAR;
+    if (!near && beside != vec3(0.0)) points[number].normal = beside;
+}
+
+// The areas of the triangles between the spokes. Of an open ring there is none between the last and the first. Each spoke errs by the rounding of both
+// its ends, and each product by that and by its own.
 void ring(PointRow row, uint number) {
     uint spokes = (row.count & ~ROW_OPEN) - 1u;
     uint faces = (row.count & ROW_OPEN) != 0u ? max(spokes, 1u) - 1u : spokes;
     vec3 middle = points[terms[row.first].source].position;
     precise vec3 normal = vec3(0.0);
+    precise float spread = 0.0;
+    precise float total = 0.0;
     for (uint i = 0u; i < faces; ++i) {
         uint next = i + 1u < spokes ? i + 1u : 0u;
         precise vec3 a = points[terms[row.first + 1u + i].source].position - middle;
         precise vec3 b = points[terms[row.first + 1u + next].source].position - middle;
         normal = normal + exact_cross(a, b);
+        spread = spread + reach(a) * reach(b);
+        total = total + (reach(a) + reach(b));
     }
-    points[number].normal = unit(normal);
+    precise float roundings = float(faces) + 4.0;
+    precise float error = ROUNDING * (2.0 * roundings * spread + 4.0 * reach(middle) * total);
+    points[number].normal = reach(normal) > CLEAR * error ? unit(normal) : vec3(0.0);
 }
 
 void normals(PointRow row, uint number) {
@@ -72,6 +118,8 @@ void main() {
     case POINTS_BLEND: blend(row, number); return;
     case POINTS_LIMIT: limit(row, number); return;
     case POINTS_RING: ring(row, number); return;
+    case POINTS_SPARE: spare(row, number); return;
+    case POINTS_NEARBY: nearby(row, number); return;
     default: normals(row, number);
     }
 }

@@ -141,8 +141,14 @@ constants! {
     POINTS_RING = 2;
     /// Step of points: normals are sums of weighted normals of other points.
     POINTS_NORMALS = 3;
+    /// Kind of a step: normals from tangents, where a point has none yet.
+    POINTS_SPARE = 4;
+    /// Kind of a step: normals from tangents nearby, where a point's own is none, or another.
+    POINTS_NEARBY = 5;
     /// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
     ROW_OPEN = 0x8000_0000;
+    /// Row flag: tangents that are nearly parallel give no normal.
+    ROW_FIRM = 0x4000_0000;
     /// Invocations of a workgroup of the shader that computes points.
     POINT_INVOCATIONS = 64;
 
@@ -160,14 +166,18 @@ constants! {
     USE_FIRST_HALF = 2;
     /// Use flag: the patch has the second half of the edge.
     USE_SECOND_HALF = 4;
-    /// Use flag: limit position and tangents of a vertex.
+    /// Use flag: limit position and normal of a vertex.
     USE_LIMIT = 8;
     /// Use flag: the limit has several normals there.
     USE_CREASED = 64;
     /// Use flag: by how many quarters its frame is turned against the patch's; two bits.
     USE_TURN_SHIFT = 4;
+    /// Use flag: where the vertex's pair of tangents cancels, the next pair is taken.
+    USE_SPARE = 128;
+    /// Use flag: the vertex has no tangents for the face, only those nearby.
+    USE_CUSP = 256;
     /// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-    USE_SIDE_SHIFT = 8;
+    USE_SIDE_SHIFT = 9;
     /// Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
     PATCH_TURNED_CORNER = 128;
 
@@ -306,6 +316,8 @@ structs! {
         plain_count: u32,
         /// The points that a patch needs in the ring at level 0..=10.
         counts: [u32; 11],
+        /// At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_PLAN`.
+        nearby: [u32; 4],
     }
 
     /// A point that is computed from control vertices.
@@ -320,7 +332,7 @@ structs! {
     PointRow {
         /// Its first term.
         first: u32,
-        /// How many terms, and `ROW_OPEN`.
+        /// How many terms, and `ROW_...` flags.
         count: u32,
     }
 

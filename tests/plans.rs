@@ -229,9 +229,9 @@ proptest! {
             let Some(expected) = truth.evaluate(ptex, 0.0, 0.0) else { continue };
             let vertex = mesh.face(face as usize)[corner as usize];
             let ring = Ring::of_vertex(truth.topology(), vertex);
-            let VertexPlan { plan, pairs } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default());
+            let VertexPlan { plan, sides, .. } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default());
             let positions: Vec<DVec3> = ring.vertices.iter().map(|&v| mesh.positions()[v as usize]).collect();
-            prop_assert_eq!((plan.ring_size, pairs.len()), (positions.len(), ring.faces.len()));
+            prop_assert_eq!((plan.ring_size, sides.len()), (positions.len(), ring.faces.len()));
             let weights = plan.stencils[0].weights.iter().enumerate();
             let limit = DVec3::blend(&weights.map(|(i, &w)| (i as u32, w)).collect::<Vec<_>>(), &positions);
             prop_assert!(limit.distance(expected.position) < 1e-12 * (1.0 + expected.position.length()));

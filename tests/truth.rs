@@ -20,7 +20,13 @@ const REFUSED: [&str; 2] = ["catmark_nonman_quadpole8", "catmark_nonman_edges"];
 struct Reference {
     ptex: usize,
     uv: [f64; 2],
-    limit: Option<LimitSample>,
+    limit: Option<Limit>,
+}
+
+struct Limit {
+    position: DVec3,
+    du: DVec3,
+    dv: DVec3,
 }
 
 fn references(path: &Path) -> Vec<Reference> {
@@ -33,7 +39,7 @@ fn parse(line: &str) -> Reference {
     let words: Vec<&str> = line.split_whitespace().collect();
     let number = |i: usize| words[i].parse::<f64>().expect("references hold numbers");
     let vector = |i: usize| DVec3::new(number(i), number(i + 1), number(i + 2));
-    let limit = (words[3] != "none").then(|| LimitSample {
+    let limit = (words[3] != "none").then(|| Limit {
         position: vector(3),
         du: vector(6),
         dv: vector(9),
@@ -115,7 +121,7 @@ fn corner(surface: &LimitSurface, ptex: usize, uv: [f64; 2]) -> Corner {
 }
 
 /// The angle between two normals in degrees; none where the reference's tangents are parallel but for rounding.
-fn angle(ours: &LimitSample, reference: &LimitSample) -> f64 {
+fn angle(ours: &LimitSample, reference: &Limit) -> f64 {
     let normal = reference
         .du
         .normalize_or_zero()
@@ -136,7 +142,7 @@ fn hold(name: &str, surface: &LimitSurface, diagonal: f64, reference: &Reference
         reference.limit.is_some(),
         "{place}: a limit or none"
     );
-    let (Some(sample), Some(limit)) = (sample, reference.limit) else {
+    let (Some(sample), Some(limit)) = (sample, &reference.limit) else {
         return false;
     };
     let corner = corner(surface, ptex, uv);
@@ -150,7 +156,7 @@ fn hold(name: &str, surface: &LimitSurface, diagonal: f64, reference: &Reference
     let distance = sample.position.distance(limit.position) / diagonal;
     assert!(distance <= bound, "{place}: {distance:.1e} off");
     if uv.iter().all(|x| x.fract() == 0.0) {
-        let angle = angle(&sample, &limit);
+        let angle = angle(&sample, limit);
         assert!(corner.slow || angle <= 0.01, "{place}: {angle:.4} degrees");
     }
     if !corner.extraordinary {

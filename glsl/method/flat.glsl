@@ -5,8 +5,8 @@
 #include "lib/cell.glsl"
 #include "lib/control_points.glsl"
 #include "lib/control_vertex.glsl"
+#include "lib/flat.glsl"
 #include "lib/levels.glsl"
-#include "lib/surface.glsl"
 
 const uint CONTROL_POINTS = 4u;
 #define CONTROL_VERTICES 4
@@ -33,10 +33,12 @@ bool has_one_normal(Patch record, vec2 uv) { return all(greaterThan(uv, vec2(0.0
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 bottom = in_point[0] * (1.0 - uv.x) + in_point[1] * uv.x;
     vec3 top = in_point[3] * (1.0 - uv.x) + in_point[2] * uv.x;
-    Surface surface =
-        Surface(bottom * (1.0 - uv.y) + top * uv.y,
-                   (in_point[1] - in_point[0]) * (1.0 - uv.y) + (in_point[2] - in_point[3]) * uv.y, top - bottom);
-    return surface_point(surface);
+    vec3 along = (in_point[1] - in_point[0]) * (1.0 - uv.y) + (in_point[2] - in_point[3]) * uv.y;
+    float greatest = max(max(reach(in_point[0]), reach(in_point[1])), max(reach(in_point[2]), reach(in_point[3])));
+    vec3 normal = flat_normal(along, top - bottom, greatest);
+    // Where the corner is straight, or two corners are one: of the diagonals, that is of the whole.
+    if (normal == vec3(0.0)) normal = flat_normal(in_point[2] - in_point[0], in_point[3] - in_point[1], greatest);
+    return Point(bottom * (1.0 - uv.y) + top * uv.y, normal);
 }
 #endif
 

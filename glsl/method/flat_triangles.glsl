@@ -7,8 +7,8 @@
 #include "lib/cell.glsl"
 #include "lib/control_points.glsl"
 #include "lib/control_vertex.glsl"
+#include "lib/flat.glsl"
 #include "lib/levels.glsl"
-#include "lib/surface.glsl"
 
 const uint CONTROL_POINTS = 3u;
 #define CONTROL_VERTICES 3
@@ -27,7 +27,8 @@ bool has_one_normal(Patch record, vec2 uv) { return min(min(uv.x, uv.y), 1.0 - u
 
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 position = in_point[0] * (1.0 - uv.x - uv.y) + in_point[1] * uv.x + in_point[2] * uv.y;
-    return surface_point(Surface(position, in_point[1] - in_point[0], in_point[2] - in_point[0]));
+    float greatest = max(max(reach(in_point[0]), reach(in_point[1])), reach(in_point[2]));
+    return Point(position, flat_normal(in_point[1] - in_point[0], in_point[2] - in_point[0], greatest));
 }
 #endif
 

@@ -13,6 +13,7 @@
 #include "lib/border.glsl"
 #include "lib/cell.glsl"
 #include "lib/control_vertex.glsl"
+#include "lib/corner.glsl"
 #include "lib/levels.glsl"
 #include "lib/quadtree.glsl"
 #include "lib/scratch.glsl"
@@ -68,6 +69,53 @@ vec3 stencil_point(Patch record, PlanHeader plan, bool inside, uint places, vec3
     return sum;
 }
 
+// The pair of tangents whose first is stencil `number`, as `stencil_point`.
+Tangents ring_tangents(Patch record, PlanHeader plan, bool inside, uint places, uint number) {
+    uint weight = plan.weights + number * plan.ring_size;
+    vec3 origin = ring_point(record, inside ? 0u : controls[places]);
+    vec3 du = vec3(0.0);
+    vec3 dv = vec3(0.0);
+    vec3 lost_u = vec3(0.0);
+    vec3 lost_v = vec3(0.0);
+    precise vec2 spread = vec2(0.0);
+    precise vec2 total = vec2(0.0);
+    for (uint i = 0u; i < plan.ring_size; ++i) {
+        precise vec3 spoke = ring_point(record, inside ? i : controls[places + i]) - origin;
+        vec2 pair = vec2(weights[weight + i], weights[weight + plan.ring_size + i]);
+        precise vec3 along_u = pair.x * spoke;
+        precise vec3 along_v = pair.y * spoke;
+        add_compensated(du, lost_u, along_u);
+        add_compensated(dv, lost_v, along_v);
+        spread += abs(pair) * reach(spoke);
+        total += abs(pair);
+    }
+    return Tangents(du, dv, rounding_errors(spread, total, origin));
+}
+
+// The normal at the patch's corner that is use `number`. It depends on nothing but what all who share it have; at cusps, and between two sharp edges
+// of a single face, on the face.
+vec3 vertex_normal(Patch record, PlanHeader plan, uint number) {
+    uint flags = borders[record.plan].flags[number];
+    uint places = borders[record.plan].rings[number];
+    uint tangents_nearby = borders[record.plan].nearby[number - 5u];
+    bool has_nearby = tangents_nearby != NO_PLAN;
+    vec3 nearby = vec3(0.0);
+    if (has_nearby) {
+        PlanHeader own = plans[borders[record.plan].plans[0]];
+        own.ring_size = min(own.ring_size, uint(weights.length()));
+        nearby = clear_normal(ring_tangents(record, own, true, 0u, tangents_nearby));
+    }
+    if ((flags & USE_CUSP) != 0u) return nearby;
+    uint pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
+    Tangents tangents = ring_tangents(record, plan, false, places, pair);
+    vec3 limit = clear_normal(tangents);
+    if (has_nearby) return normal_of_single(tangents, limit, nearby);
+    if (limit == vec3(0.0) && (flags & USE_SPARE) != 0u) {
+        return clear_normal(ring_tangents(record, plan, false, places, pair + 2u));
+    }
+    return limit;
+}
+
 // Where the parts of a slot end: the heads, the plain vertices, the points of each use's plan.
 struct Parts {
     uint plain;
@@ -77,7 +125,7 @@ struct Parts {
 // How many points of a use's plan are in the slot.
 uint use_points(PlanHeader header, uint flags, uint level) {
     bool halved = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u;
-    return (flags & USE_LIMIT) != 0u ? 3u : header.counts[min(level + uint(halved), HIGHEST_LEVEL + 1u)];
+    return (flags & USE_LIMIT) != 0u ? 2u : header.counts[min(level + uint(halved), HIGHEST_LEVEL + 1u)];
 }
 
 // Writes the heads on the way, each by the invocation of its number.
@@ -118,7 +166,7 @@ vec3 plan_point(Patch record, Parts parts, uint level, uint count, uint next) {
     uint points = use_points(header, flags, level);
     header.ring_size = min(header.ring_size, uint(weights.length()) / max(min(points, count), 1u));
     uint stencil = next - start;
-    if ((flags & USE_LIMIT) != 0u && stencil > 0u) stencil += 2u * (flags >> USE_SIDE_SHIFT);
+    if ((flags & USE_LIMIT) != 0u && stencil > 0u) return vertex_normal(record, header, number);
     vec3 origin = ring_point(record, inside ? 0u : controls[places]);
     return stencil_point(record, header, inside, places, origin, stencil);
 }
@@ -160,19 +208,18 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint flags = borders[record.plan].flags[place.number];
     vec4 head = scratch[slot + place.number];
     uint first = slot + uint(head.w);
-    Surface surface;
     if ((flags & USE_LIMIT) != 0u) {
-        surface = Surface(scratch[first].xyz, scratch[first + 1u].xyz, scratch[first + 2u].xyz);
-    } else {
-        vec2 local = place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
-        Leaf leaf = find_leaf(borders[record.plan].roots[place.number], local);
-        Basis u, v;
-        creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
-        if (leaf.kind == NODE_CURVE) v = CURVE;
-        uint row = leaf.points + 16u * (flags >> USE_SIDE_SHIFT);
-        surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + leaf.stride, u),
-                                  scratch_row(first, row + 2u * leaf.stride, u), scratch_row(first, row + 3u * leaf.stride, u));
+        precise vec3 vertex = scratch[first].xyz + head.xyz;
+        return Point(vertex, scratch[first + 1u].xyz);
     }
+    vec2 local = place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
+    Leaf leaf = find_leaf(borders[record.plan].roots[place.number], local);
+    Basis u, v;
+    creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
+    if (leaf.kind == NODE_CURVE) v = CURVE;
+    uint row = leaf.points + 16u * (flags >> USE_SIDE_SHIFT);
+    Surface surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + leaf.stride, u),
+                              scratch_row(first, row + 2u * leaf.stride, u), scratch_row(first, row + 3u * leaf.stride, u));
     surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;

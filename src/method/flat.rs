@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::surface::{Controls, Surface, SurfacePoint};
+use crate::method::surface::{Controls, SurfacePoint, Tangents, UNIT, reach};
 use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
 
@@ -88,23 +88,38 @@ fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
             .sum::<Vec3>()
             / vertices.len() as f32
     };
-    let [a, b, c, d] = std::array::from_fn(point);
+    let corners: [Vec3; 4] = std::array::from_fn(point);
+    let [a, b, c, d] = corners;
     let (bottom, top) = (a * (1.0 - uv.x) + b * uv.x, d * (1.0 - uv.x) + c * uv.x);
-    let surface = Surface {
+    let along = (b - a) * (1.0 - uv.y) + (c - d) * uv.y;
+    let own = normal(along, top - bottom, &corners);
+    SurfacePoint {
         position: bottom * (1.0 - uv.y) + top * uv.y,
-        du: (b - a) * (1.0 - uv.y) + (c - d) * uv.y,
-        dv: top - bottom,
+        // Where the corner is straight, or two corners are one: of the diagonals, that is of the whole.
+        normal: if own == Vec3::ZERO {
+            normal(c - a, d - b, &corners)
+        } else {
+            own
+        },
+    }
+}
+
+/// Of two differences of points, each of which was rounded once.
+fn normal(du: Vec3, dv: Vec3, points: &[Vec3]) -> Vec3 {
+    let greatest = points.iter().map(|&point| reach(point));
+    let error = 4.0 * UNIT * greatest.fold(0.0, f32::max);
+    let tangents = Tangents {
+        sums: [du, dv],
+        errors: [error; 2],
     };
-    surface.point()
+    tangents.normal()
 }
 
 fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let controls = &pass.controls[pass.patches[patch].controls as usize..];
     let [a, b, c] = [0, 1, 2].map(|corner| given.vertices[controls[corner] as usize]);
-    let surface = Surface {
+    SurfacePoint {
         position: a * (1.0 - uv.x - uv.y) + b * uv.x + c * uv.y,
-        du: b - a,
-        dv: c - a,
-    };
-    surface.point()
+        normal: normal(b - a, c - a, &[a, b, c]),
+    }
 }

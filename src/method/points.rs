@@ -9,6 +9,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
+use crate::method::surface::{CLEAR, Tangents, UNIT, reach};
 use crate::method::unit::unit;
 use crate::subdivision::Mask;
 
@@ -32,6 +33,8 @@ pub enum Row<'a> {
     Blend(&'a Mask),
     /// Position and tangents from control vertices.
     Limit([&'a Mask; 3]),
+    /// The same; tangents that are nearly parallel give no normal.
+    Firm([&'a Mask; 3]),
     /// Normal of the faces between the `ends` around a point, counter-clockwise.
     Ring {
         /// The point in the middle.
@@ -65,6 +68,10 @@ impl Points {
                 .terms
                 .extend(mask.iter().map(|&(v, w)| term(v, w, 0.0, 0.0))),
             Row::Limit(masks) => self.terms.extend(joined(masks)),
+            Row::Firm(masks) => {
+                self.terms.extend(joined(masks));
+                flags = abi::ROW_FIRM;
+            }
             Row::Ring { middle, ends, open } => {
                 let all = std::iter::once(&middle).chain(ends);
                 self.terms
@@ -108,55 +115,107 @@ impl Points {
         points: &[Point],
         before: Point,
     ) -> Point {
-        let count = (row.count & !abi::ROW_OPEN) as usize;
+        let count = (row.count & !(abi::ROW_OPEN | abi::ROW_FIRM)) as usize;
         let terms = &self.terms[row.first as usize..][..count];
-        let vertex = |term: &PointTerm| vertices[term.source as usize];
-        let sum = |weight: fn(&PointTerm) -> f32| {
-            terms
-                .iter()
-                .fold(Vec3::ZERO, |sum, term| sum + weight(term) * vertex(term))
+        let sum = || {
+            terms.iter().fold(Vec3::ZERO, |sum, term| {
+                sum + term.position * vertices[term.source as usize]
+            })
         };
-        let position = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
-        match kind {
-            abi::POINTS_BLEND => Point {
-                position: sum(|term| term.position).to_array(),
-                ..before
-            },
+        let normal = match kind {
+            abi::POINTS_BLEND => {
+                return Point {
+                    position: sum().to_array(),
+                    ..before
+                };
+            }
             abi::POINTS_LIMIT => {
-                let (du, dv) = (sum(|term| term.du), sum(|term| term.dv));
-                let normal = unit(unit(du).cross(unit(dv)));
-                Point {
-                    position: sum(|term| term.position).to_array(),
-                    normal: normal.to_array(),
+                let firm = row.count & abi::ROW_FIRM != 0;
+                return Point {
+                    position: sum().to_array(),
+                    normal: tangent_normal(terms, vertices, firm).to_array(),
+                };
+            }
+            abi::POINTS_SPARE if before.normal != [0.0; 3] => before.normal.into(),
+            abi::POINTS_SPARE => tangent_normal(terms, vertices, false),
+            abi::POINTS_NEARBY => {
+                let nearby = tangent_normal(terms, vertices, false);
+                let own = Vec3::from(before.normal);
+                let apart = own - nearby;
+                let near = own != Vec3::ZERO && apart.dot(apart) < NEAR;
+                if near || nearby == Vec3::ZERO {
+                    own
+                } else {
+                    nearby
                 }
             }
-            abi::POINTS_RING => {
-                let middle = position(&terms[0]);
-                let spokes: Vec<Vec3> = terms[1..]
-                    .iter()
-                    .map(|term| position(term) - middle)
-                    .collect();
-                let faces = spokes
-                    .len()
-                    .saturating_sub(usize::from(row.count & abi::ROW_OPEN != 0));
-                let normal = (0..faces).fold(Vec3::ZERO, |sum, i| {
-                    sum + spokes[i].cross(spokes[(i + 1) % spokes.len()])
-                });
-                Point {
-                    normal: unit(normal).to_array(),
-                    ..before
-                }
-            }
-            _ => {
-                let normal = terms.iter().fold(Vec3::ZERO, |sum, term| {
-                    sum + term.position * Vec3::from(points[term.source as usize].normal)
-                });
-                Point {
-                    normal: unit(normal).to_array(),
-                    ..before
-                }
-            }
+            abi::POINTS_RING => ring_normal(terms, points, row.count & abi::ROW_OPEN != 0),
+            _ => unit(terms.iter().fold(Vec3::ZERO, |sum, term| {
+                sum + term.position * Vec3::from(points[term.source as usize].normal)
+            })),
+        };
+        Point {
+            normal: normal.to_array(),
+            ..before
         }
+    }
+}
+
+/// The square of the least sine between the tangents of a firm row, and of how far a normal may be from that nearby, if it is to stay: see
+/// `subdivision/normals.rs`.
+const FIRM: f32 = 1.0 / 256.0;
+const NEAR: f32 = 0.25;
+
+/// The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
+/// they are small beside the model. Zero where rounding may have made it.
+fn tangent_normal(terms: &[PointTerm], vertices: &[Vec3], firm: bool) -> Vec3 {
+    let vertex = |term: &PointTerm| vertices[term.source as usize];
+    let origin = terms.last().map_or(Vec3::ZERO, vertex);
+    let mut tangents = Tangents::default();
+    let (mut spread, mut total) = ([0.0; 2], [0.0; 2]);
+    for term in terms {
+        let spoke = vertex(term) - origin;
+        for (i, weight) in [term.du, term.dv].into_iter().enumerate() {
+            tangents.sums[i] += weight * spoke;
+            spread[i] += weight.abs() * reach(spoke);
+            total[i] += weight.abs();
+        }
+    }
+    let roundings = terms.len() as f32 + 4.0;
+    tangents.errors = [0, 1].map(|i| UNIT * (roundings * spread[i] + reach(origin) * total[i]));
+    if !tangents.span_plane() {
+        return Vec3::ZERO;
+    }
+    let normal = unit(tangents.sums[0]).cross(unit(tangents.sums[1]));
+    if firm && normal.dot(normal) < FIRM {
+        return Vec3::ZERO;
+    }
+    unit(normal)
+}
+
+/// The areas of the triangles between the spokes of a ring.
+fn ring_normal(terms: &[PointTerm], points: &[Point], open: bool) -> Vec3 {
+    let position = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
+    let middle = position(&terms[0]);
+    let spokes: Vec<Vec3> = terms[1..]
+        .iter()
+        .map(|term| position(term) - middle)
+        .collect();
+    let faces = spokes.len().saturating_sub(usize::from(open));
+    let (mut normal, mut spread, mut total) = (Vec3::ZERO, 0.0, 0.0);
+    for i in 0..faces {
+        let (a, b) = (spokes[i], spokes[(i + 1) % spokes.len()]);
+        normal += a.cross(b);
+        spread += reach(a) * reach(b);
+        total += reach(a) + reach(b);
+    }
+    // Each spoke errs by the rounding of both its ends, and each product by that and by its own.
+    let roundings = faces as f32 + 4.0;
+    let error = UNIT * (2.0 * roundings * spread + 4.0 * reach(middle) * total);
+    if reach(normal) > CLEAR * error {
+        unit(normal)
+    } else {
+        Vec3::ZERO
     }
 }
 

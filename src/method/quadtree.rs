@@ -2,6 +2,7 @@
 //! its 1-ring and a plan, whose stencils the control shader runs and whose quadtree the evaluation shader walks.
 
 mod border;
+mod corner;
 mod plain;
 mod twin;
 

@@ -73,8 +73,7 @@ pub fn whole_faces(model: &Model) -> Result<()> {
     }
 }
 
-/// A point for each vertex: where it is, with the normal of the faces around it, each by the parallelogram of its two edges there: of triangles
-/// by their area.
+/// A point for each vertex: where it is, with the normal of the faces around it, each by its area.
 fn vertex_normals(topology: &Topology) -> Points {
     let mut points = Points::default();
     points.begin(abi::POINTS_BLEND, 0);
@@ -89,24 +88,40 @@ fn vertex_normals(topology: &Topology) -> Points {
     points
 }
 
-/// Adds the ring of faces around a vertex. Where several fans meet, all follow one another with the vertex itself between them: faces that
-/// have it twice have no area. `first` is the point of vertex 0.
+/// Adds the ring of faces around a vertex, with all of their vertices: cut from the vertex into triangles, a face has its own area as a vector, whatever
+/// its shape, while its two edges there would turn over at a reflex corner. Where several fans meet, all follow one another with the vertex itself
+/// between them: faces that have it twice have no area. `first` is the point of vertex 0.
 pub fn push_ring(points: &mut Points, topology: &Topology, vertex: u32, first: u32) {
     let fans = fans(topology, vertex);
-    let end = |&edge: &u32| first + topology.edge(edge).other(vertex);
     let middle = first + vertex;
+    let rim = |fan: &Fan| -> Vec<u32> {
+        let mut rim: Vec<u32> = Vec::new();
+        for &face in &fan.faces {
+            let vertices = topology.face(face);
+            let at = vertices.iter().position(|&v| v == vertex);
+            let at = at.expect("the fan's faces touch its vertex");
+            // The last is the next face's first.
+            let around = (1..vertices.len() - 1).map(|i| vertices[(at + i) % vertices.len()]);
+            rim.extend(around.map(|vertex| first + vertex));
+        }
+        if !fan.closed {
+            let last = *fan.edges.last().expect("a fan has edges");
+            rim.push(first + topology.edge(last).other(vertex));
+        }
+        rim
+    };
     if let [fan] = &fans[..] {
-        let ends: Vec<u32> = fan.edges.iter().map(end).collect();
         return points.push(Row::Ring {
             middle,
-            ends: &ends,
+            ends: &rim(fan),
             open: !fan.closed,
         });
     }
     let mut ends = Vec::new();
     for fan in &fans {
-        ends.extend(fan.edges.iter().map(end));
-        ends.extend(fan.edges.first().filter(|_| fan.closed).map(end));
+        let rim = rim(fan);
+        ends.extend_from_slice(&rim);
+        ends.extend(rim.first().filter(|_| fan.closed));
         ends.push(middle);
     }
     let open = !ends.is_empty();

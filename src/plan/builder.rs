@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::error::{Error, Result};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
+use crate::plan::nearby;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
 use crate::plan::tree::{Node, Tree, child_of_corner};
@@ -69,12 +70,15 @@ pub struct Plan {
     pub nodes: Vec<Node>,
     /// Sorted by level.
     pub stencils: Vec<Stencil>,
+    /// At each corner whose normal is that of its surroundings, see [`nearby`](super::nearby): two tangents, weights of the ring.
+    pub nearby: [Option<[Vec<f64>; 2]>; 4],
 }
 
 impl Plan {
     /// Builds the plan of a face: what is inside of it. Edges and corners have plans of their own.
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Plan {
         let base = Level::base(configuration);
+        let nearby = nearby::tangents(configuration, &base);
         let mut builder = Builder {
             options,
             rows: Rows::zero(base.rows.width(), 0),
@@ -89,7 +93,10 @@ impl Plan {
             options.max_level,
             &mut levels,
         );
-        sorted(tree.flatten(), &builder.rows, &levels, options.max_level)
+        Plan {
+            nearby,
+            ..sorted(tree.flatten(), &builder.rows, &levels, options.max_level)
+        }
     }
 
     /// How many stencils each level 0..=max_level needs; they are the first ones.
@@ -289,6 +296,7 @@ pub(super) fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_leve
         level: levels[old as usize],
     });
     Plan {
+        nearby: Default::default(),
         ring_size: rows.width(),
         max_level,
         nodes,

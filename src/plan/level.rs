@@ -6,6 +6,7 @@ use crate::plan::rows::Rows;
 use crate::subdivision::{Refinement, refine, refine_edge};
 
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
+#[derive(Clone)]
 pub(super) struct Level {
     pub topology: Topology,
     pub rows: Rows,

@@ -13,8 +13,10 @@ pub struct PackedPlans {
     pub nodes: Vec<abi::Node>,
     /// The nodes' points: numbers of stencils, two 16-bit halves a word, the lower first.
     pub points: Vec<u32>,
-    /// The stencils' weights.
+    /// The stencils' weights, and behind those of each plan its tangents near corners.
     pub weights: Vec<f32>,
+    /// For each plan the number, among its stencils, of the first of two tangents near each corner; [`abi::NO_PLAN`] without any.
+    pub nearby: Vec<[u32; 4]>,
 }
 
 impl PackedPlans {
@@ -40,10 +42,21 @@ impl PackedPlans {
             let packed = self.pack(node, root);
             self.nodes.push(packed);
         }
-        for stencil in &plan.stencils {
-            self.weights
-                .extend(stencil.weights.iter().map(|&weight| weight as f32));
+        let tangents = plan.nearby.iter().flatten().flatten();
+        let rows = plan.stencils.iter().map(|stencil| &stencil.weights);
+        for row in rows.chain(tangents) {
+            self.weights.extend(row.iter().map(|&weight| weight as f32));
         }
+        let mut next = plan.stencils.len() as u32;
+        self.nearby.push(plan.nearby.each_ref().map(|tangents| {
+            let number = if tangents.is_some() {
+                next
+            } else {
+                abi::NO_PLAN
+            };
+            next += if tangents.is_some() { 2 } else { 0 };
+            number
+        }));
     }
 
     /// Appends a node of its own, a B-spline of sixteen points, number x + 4 y; returns its number.

@@ -4,7 +4,7 @@ use crate::plan::builder::{Plan, PlanOptions, Stencil};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
 use crate::plan::rows::Rows;
-use crate::subdivision::{TangentPlane, limit_stencil, tangent_plane};
+use crate::subdivision::{Mask, TangentPlane, closing_tangents, limit_stencil, tangent_plane};
 
 /// Which vertex of a configuration is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,8 +20,19 @@ pub enum VertexKind {
 pub struct VertexPlan {
     /// The stencils, all of level 0.
     pub plan: Plan,
-    /// For each face of the configuration that has the vertex: the number of its pair of tangents. The faces come first in the configuration.
-    pub pairs: Vec<u32>,
+    /// For each face of the configuration that has the vertex, which come first there, how it finds its normal.
+    pub sides: Vec<Side>,
+    /// How many tangent planes there are.
+    pub planes: usize,
+}
+
+/// How a face finds its normal at a vertex. Where the inside's plan has tangents near the corner, these have a say as well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Side {
+    /// The number of its pair of tangents; none at a cusp.
+    pub pair: Option<u32>,
+    /// Whether the next pair is to be taken where this one cancels.
+    pub spare: bool,
 }
 
 impl VertexPlan {
@@ -37,12 +48,19 @@ impl VertexPlan {
                 let around = whole.topology.vertex_faces(0);
                 let corners: Vec<(u32, u32)> =
                     around.iter().map(|at| (at.face, at.corner)).collect();
-                (whole, corners)
+                (whole.clone(), corners)
             }
             // Corner 2 of the n-gon's first part; all its parts agree.
             VertexKind::Centre => (whole.refined(&[(0, 0)]), vec![(0, 2)]),
         };
         corners.sort_unstable();
+        let spares: Vec<Option<[Mask; 2]>> = match kind {
+            VertexKind::Control => corners
+                .iter()
+                .map(|&(face, corner)| closing_tangents(&whole.topology, face, corner))
+                .collect(),
+            VertexKind::Centre => vec![None],
+        };
         let mut scale = 1.0;
         loop {
             let limits = corners
@@ -51,21 +69,34 @@ impl VertexPlan {
             if let Some(limits) = limits.collect::<Option<Vec<_>>>() {
                 let mut rows = Rows::zero(level.rows.width(), 0);
                 rows.push(&limits[0].position, &level.rows);
-                let mut planes: Vec<TangentPlane> = Vec::new();
-                let mut pairs = Vec::with_capacity(corners.len());
-                for (limit, &(face, corner)) in limits.iter().zip(&corners) {
+                let mut planes: Vec<(TangentPlane, Side)> = Vec::new();
+                let mut sides = Vec::with_capacity(corners.len());
+                for ((limit, spare), &(face, corner)) in limits.iter().zip(&spares).zip(&corners) {
                     let plane = tangent_plane(&level.topology, face, corner);
-                    let known = planes.iter().position(|&known| known == plane);
-                    pairs.push(known.unwrap_or(planes.len()) as u32);
-                    if known.is_none() {
-                        planes.push(plane);
+                    if let Some(&(_, side)) = planes.iter().find(|(known, _)| *known == plane) {
+                        sides.push(side);
+                        continue;
+                    }
+                    let alone = level.topology.fan(face, corner).faces.len() == 1;
+                    let cusp = matches!(plane, TangentPlane::Face(_)) && !alone;
+                    let side = Side {
+                        pair: (!cusp).then_some((rows.len() as u32 - 1) / 2),
+                        spare: spare.is_some(),
+                    };
+                    if !cusp {
                         rows.push(&limit.du, &level.rows);
                         rows.push(&limit.dv, &level.rows);
                     }
+                    for mask in spare.iter().flatten() {
+                        rows.push(mask, &whole.rows);
+                    }
+                    planes.push((plane, side));
+                    sides.push(side);
                 }
                 return VertexPlan {
                     plan: plan(&rows, scale, options),
-                    pairs,
+                    sides,
+                    planes: planes.len(),
                 };
             }
             let (next, corner) = refined(&level, &corners);
@@ -104,5 +135,6 @@ fn plan(rows: &Rows, scale: f64, options: PlanOptions) -> Plan {
         max_level: options.max_level,
         nodes: Vec::new(),
         stencils: (0..rows.len()).map(stencil).collect(),
+        nearby: Default::default(),
     }
 }

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 
 use crate::mesh::Scheme;
 use crate::mesh::topology::Topology;
-use crate::patch::{boxspline, bspline};
-use crate::subdivision::limit::LimitStencil;
-use crate::subdivision::limit_surface::{LimitSample, nearest_corner, scaled};
+use crate::patch::boxspline;
+use crate::subdivision::jet::{Jet, Sum};
+use crate::subdivision::limit_surface::{bspline_jet, nearest_corner, recentred};
 use crate::subdivision::masks::Blend;
 use crate::subdivision::regular::bspline_patch;
 use crate::subdivision::schemes::vertex_limit;
@@ -16,7 +16,9 @@ use crate::subdivision::{Refinement, box_spline_patch};
 /// A face, number 0 of a topology with all that its limit depends on.
 pub(super) struct SchemeCell {
     pub topology: Topology,
+    /// Relative to the origin, which is one of the face's vertices.
     pub positions: Vec<DVec3>,
+    pub origin: DVec3,
     pub scheme: Scheme,
 }
 
@@ -25,7 +27,7 @@ const DEEPEST: u32 = 26;
 
 impl SchemeCell {
     /// The limit at (u, v) of the face; of its ptex face at `corner` when it is neither triangle nor quad.
-    pub fn evaluate(mut self, corner: u32, mut uv: DVec2) -> LimitSample {
+    pub fn evaluate(mut self, corner: u32, mut uv: DVec2) -> Jet {
         if !self.scheme.is_whole(self.topology.face(0).len()) {
             self = self.child(corner);
         }
@@ -33,17 +35,17 @@ impl SchemeCell {
         let mut scale = 1.0;
         for depth in 0..DEEPEST {
             if let Some(corner) = corner_at(triangle, uv) {
-                return scaled(self.limit(corner, DEEPEST - depth), scale);
+                return self.limit(corner, DEEPEST - depth).scaled(scale);
             }
-            if let Some(sample) = self.regular(uv) {
-                return scaled(sample, scale);
+            if let Some(jet) = self.regular(uv) {
+                return jet.scaled(scale);
             }
             let (child, inside, turn) = descend(triangle, uv);
             self = self.child(child);
             uv = inside;
             scale *= turn;
         }
-        scaled(self.flat(uv), scale)
+        self.flat(uv).scaled(scale)
     }
 
     fn child(&self, child: u32) -> SchemeCell {
@@ -51,38 +53,44 @@ impl SchemeCell {
             topology, masks, ..
         } = refine_child(&self.topology, self.scheme, child);
         let blend = |mask| DVec3::blend(mask, &self.positions);
+        let mut positions: Vec<DVec3> = masks.iter().map(|mask| blend(mask)).collect();
+        // The child at a corner keeps it, but that of an n-gon begins there; the one in the middle of a triangle has none.
+        let n = topology.face(0).len();
+        let at = if n == self.topology.face(0).len() {
+            child as usize % n
+        } else {
+            0
+        };
+        let mut origin = self.origin;
+        recentred(&mut positions, &mut origin, topology.face(0)[at]);
         SchemeCell {
             topology,
-            positions: masks.iter().map(|mask| blend(mask)).collect(),
+            positions,
+            origin,
             scheme: self.scheme,
         }
     }
 
     /// The limit at a corner. Where no mask is known after so many more refinements, tangents are the edges there, in error by about 2^-26 or whatever
     /// else the scheme's modes contract to.
-    fn limit(&self, corner: u32, levels: u32) -> LimitSample {
-        if let Some(LimitStencil { position, du, dv }) =
-            vertex_limit(&self.topology, self.scheme, 0, corner)
-        {
-            return LimitSample {
-                position: DVec3::blend(&position, &self.positions),
-                du: DVec3::blend(&du, &self.positions),
-                dv: DVec3::blend(&dv, &self.positions),
-            };
+    fn limit(&self, corner: u32, levels: u32) -> Jet {
+        if let Some(stencil) = vertex_limit(&self.topology, self.scheme, 0, corner) {
+            return Jet::of(&stencil, &self.positions).moved(self.origin);
         }
         if levels == 0 {
-            return LimitSample {
+            return Jet {
                 position: self.settled(corner),
                 ..self.corner(corner)
             };
         }
-        scaled(self.child(corner).limit(corner, levels - 1), 2.0)
+        self.child(corner).limit(corner, levels - 1).scaled(2.0)
     }
 
     /// Where a corner goes. Among faces of both kinds it may be off its limit by as much as a face is wide, so it takes as many halvings again.
     fn settled(&self, corner: u32) -> DVec3 {
-        let at =
-            |cell: &SchemeCell| cell.positions[cell.topology.face(0)[corner as usize] as usize];
+        let at = |cell: &SchemeCell| {
+            cell.origin + cell.positions[cell.topology.face(0)[corner as usize] as usize]
+        };
         if self.scheme == Scheme::Butterfly {
             return at(self);
         }
@@ -91,10 +99,10 @@ impl SchemeCell {
     }
 
     /// A corner of the face itself, and the face's edges there as derivatives.
-    fn corner(&self, corner: u32) -> LimitSample {
+    fn corner(&self, corner: u32) -> Jet {
         let face = self.topology.face(0);
         let points: Vec<DVec3> = face.iter().map(|&v| self.positions[v as usize]).collect();
-        let along = |from: usize, to: usize| points[to] - points[from];
+        let along = |from: usize, to: usize| Sum::between(points[from], points[to]);
         let (du, dv) = match (face.len(), corner) {
             (3, _) => (along(0, 1), along(0, 2)),
             (_, 0) => (along(0, 1), along(0, 3)),
@@ -102,64 +110,50 @@ impl SchemeCell {
             (_, 2) => (along(3, 2), along(1, 2)),
             _ => (along(3, 2), along(0, 3)),
         };
-        LimitSample {
-            position: points[corner as usize],
-            du,
-            dv,
-        }
+        let position = self.origin + points[corner as usize];
+        Jet { position, du, dv }
     }
 
     /// Between the limits at the corners, linearly.
-    fn flat(&self, uv: DVec2) -> LimitSample {
+    fn flat(&self, uv: DVec2) -> Jet {
         let DVec2 { x: u, y: v } = uv;
         let weights = match self.topology.face(0).len() {
             3 => vec![1.0 - u - v, u, v],
             _ => vec![(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v],
         };
-        let mut sum = LimitSample::default();
+        let mut sum = Jet::default();
         for (corner, weight) in (0..).zip(weights) {
-            let sample = self.limit(corner, 0);
-            sum.position += weight * sample.position;
-            sum.du += weight * sample.du;
-            sum.dv += weight * sample.dv;
+            let jet = self.limit(corner, 0);
+            sum.position += weight * jet.position;
+            sum.du = sum.du + jet.du * weight;
+            sum.dv = sum.dv + jet.dv * weight;
         }
         sum
     }
 
     /// The face's polynomial at (u, v), where the scheme has one.
-    fn regular(&self, uv: DVec2) -> Option<LimitSample> {
-        let mut sum = LimitSample::default();
-        let mut add = |point: DVec3, value: f64, du: f64, dv: f64| {
-            sum.position += value * point;
-            sum.du += du * point;
-            sum.dv += dv * point;
-        };
+    fn regular(&self, uv: DVec2) -> Option<Jet> {
         match self.scheme {
             Scheme::Butterfly | Scheme::Bilinear => return None,
             Scheme::CatmullClark | Scheme::Loop | Scheme::LoopStam => {}
         }
         if self.topology.face(0).len() == 3 {
-            let points = box_spline_patch(&self.topology, 0)?;
+            let masks = box_spline_patch(&self.topology, 0)?;
+            let points = masks.map(|mask| DVec3::blend(&mask, &self.positions));
             let basis = boxspline::basis(uv.x, uv.y);
-            for (i, mask) in points.iter().enumerate() {
-                let point = DVec3::blend(mask, &self.positions);
-                add(point, basis.value[i], basis.du[i], basis.dv[i]);
-            }
-        } else {
-            let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
-            let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
-            for (i, point) in patch.points.iter().enumerate() {
-                let point = DVec3::blend(&point.mask(), &self.positions);
-                let (x, y) = (i % 4, i / 4);
-                add(
-                    point,
-                    u.value[x] * v.value[y],
-                    u.derivative[x] * v.value[y],
-                    u.value[x] * v.derivative[y],
-                );
-            }
+            let sum = |weights: [f64; 12]| {
+                let weights: [(u32, f64); 12] = std::array::from_fn(|i| (i as u32, weights[i]));
+                Sum::of(&weights, &points)
+            };
+            let jet = Jet {
+                position: sum(basis.value).value,
+                du: sum(basis.du),
+                dv: sum(basis.dv),
+            };
+            return Some(jet.moved(self.origin));
         }
-        Some(sum)
+        let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
+        Some(bspline_jet(&patch, &self.positions, uv).moved(self.origin))
     }
 }
 
@@ -241,8 +235,13 @@ mod tests {
         SchemeCell {
             topology,
             positions: vertices.iter().map(position).collect(),
+            origin: DVec3::ZERO,
             scheme: Scheme::Loop,
         }
+    }
+
+    fn normal(jet: Jet) -> DVec3 {
+        jet.normal().expect("nothing cancels here")
     }
 
     /// Distance of the positions and angle of the normals of a mask at corner 0 and of refinement. Elsewhere than at sharp vertices sixteen levels show the normal: of more, rounding
@@ -256,7 +255,7 @@ mod tests {
         }
         (
             mask.position.distance(position),
-            mask.normal().angle_between(cell.corner(0).normal()),
+            normal(mask).angle_between(normal(cell.corner(0))),
         )
     }
 

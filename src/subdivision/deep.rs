@@ -14,45 +14,112 @@ const DEEPEST: u32 = 20;
 
 /// The limit position and tangents at `corner` of `face`, a triangle or quad, over the vertices of `topology`.
 pub fn deep_limit(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> LimitStencil {
-    let mut faces = vec![face];
-    for _ in 0..rings(scheme) {
-        faces = with_neighbours(topology, &faces);
+    Descent::new(topology, scheme, face).limit(corner)
+}
+
+/// Two tangents next to `corner` of `face`, a triangle or quad: at (2^-halvings, 2^-halvings) from the corner. They span the tangent plane there and have
+/// its orientation, no more: as rows of weights they are orthonormal.
+pub fn tangents_nearby(
+    topology: &Topology,
+    scheme: Scheme,
+    face: u32,
+    corner: u32,
+    halvings: u32,
+) -> [Mask; 2] {
+    let n = topology.face(face).len() as u32;
+    let whole = Descent::new(topology, scheme, face);
+    let triangle = n == 3;
+    let levels = if triangle { halvings - 1 } else { halvings };
+    let mut near = (0..levels).fold(whole, |level, _| level.child(corner));
+    if triangle {
+        // In the middle of the edge opposite to the corner, which is the middle child's corner of that number.
+        near = near.child(3);
     }
-    let (mut topology, vertices) = topology.excerpt(&faces);
-    // Of each vertex of the excerpt its weights over those that it began with.
-    let unit = |one: usize| {
-        (0..vertices.len())
-            .map(|i| f64::from(u8::from(i == one)))
-            .collect()
+    let opposite = if triangle { corner } else { (corner + 2) % n };
+    let vertices = near.vertices.clone();
+    let [_, du, dv] = near.limit_rows(opposite);
+    orthonormal(&du, &dv).map(|row| outside(&row, &vertices))
+}
+
+/// Two rows of weights that span the plane of two others and have its orientation, of length 1 and orthogonal (Gram, Schmidt): beside a cusp both
+/// derivatives nearly have its direction, and their difference would drown in the rounding of an f32.
+pub(crate) fn orthonormal(du: &[f64], dv: &[f64]) -> [Vec<f64>; 2] {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let unit = |row: Vec<f64>| -> Vec<f64> {
+        let length = dot(&row, &row).sqrt();
+        row.iter().map(|weight| weight / length).collect()
     };
-    let mut values: Vec<Vec<f64>> = (0..vertices.len()).map(unit).collect();
-    for _ in 0..DEEPEST {
-        if let Some(stencil) = vertex_limit(&topology, scheme, 0, corner) {
-            let mask = |mask: &Mask| outside(&Vec::blend(mask, &values), &vertices);
-            return LimitStencil {
-                position: mask(&stencil.position),
-                du: mask(&stencil.du),
-                dv: mask(&stencil.dv),
-            };
+    let du = unit(du.to_vec());
+    let share = dot(&du, dv);
+    let rest = dv.iter().zip(&du).map(|(b, a)| b - share * a).collect();
+    let dv = unit(rest);
+    [du, dv]
+}
+
+/// A face in its surroundings at some level.
+struct Descent {
+    scheme: Scheme,
+    topology: Topology,
+    /// Of each vertex its weights over those of the beginning.
+    values: Vec<Vec<f64>>,
+    /// The numbers that these have outside.
+    vertices: Vec<u32>,
+}
+
+impl Descent {
+    fn new(topology: &Topology, scheme: Scheme, face: u32) -> Descent {
+        let mut faces = vec![face];
+        for _ in 0..rings(scheme) {
+            faces = with_neighbours(topology, &faces);
         }
-        let refined = refine_child(&topology, scheme, corner);
-        values = refined
-            .masks
-            .iter()
-            .map(|mask| Vec::blend(mask, &values))
-            .collect();
-        topology = refined.topology;
+        let (topology, vertices) = topology.excerpt(&faces);
+        let unit = |one: usize| {
+            (0..vertices.len())
+                .map(|i| f64::from(u8::from(i == one)))
+                .collect()
+        };
+        Descent {
+            scheme,
+            topology,
+            values: (0..vertices.len()).map(unit).collect(),
+            vertices,
+        }
     }
-    let point = |vertex: u32| outside(&values[vertex as usize], &vertices);
-    let (here, next, previous) = around(topology.face(0), corner);
-    let towards = |vertex: u32| {
-        let edge = Mask::from_slice(&[(vertex, 1.0), (here, -1.0)]);
-        outside(&Vec::blend(&edge, &values), &vertices)
-    };
-    LimitStencil {
-        position: point(here),
-        du: towards(next),
-        dv: towards(previous),
+
+    fn child(self, child: u32) -> Descent {
+        let refined = refine_child(&self.topology, self.scheme, child);
+        let masks = refined.masks.iter();
+        Descent {
+            values: masks.map(|mask| Vec::blend(mask, &self.values)).collect(),
+            topology: refined.topology,
+            ..self
+        }
+    }
+
+    fn limit(self, corner: u32) -> LimitStencil {
+        let vertices = self.vertices.clone();
+        let mask = |row: Vec<f64>| outside(&row, &vertices);
+        let [position, du, dv] = self.limit_rows(corner).map(mask);
+        LimitStencil { position, du, dv }
+    }
+
+    /// Position and tangents at a corner, once a mask is known or the vertex stands for its limit.
+    fn limit_rows(mut self, corner: u32) -> [Vec<f64>; 3] {
+        for _ in 0..DEEPEST {
+            if let Some(LimitStencil { position, du, dv }) =
+                vertex_limit(&self.topology, self.scheme, 0, corner)
+            {
+                return [position, du, dv].map(|mask| Vec::blend(&mask, &self.values));
+            }
+            self = self.child(corner);
+        }
+        let (here, next, previous) = around(self.topology.face(0), corner);
+        let towards = |vertex: u32| Vec::blend(&[(vertex, 1.0), (here, -1.0)], &self.values);
+        [
+            self.values[here as usize].clone(),
+            towards(next),
+            towards(previous),
+        ]
     }
 }
 

@@ -106,15 +106,38 @@ pub enum TangentPlane {
     Face(u32),
 }
 
-/// The tangent plane that [`limit_stencil`] gives at `corner` of `face`, where it gives one.
+/// Who shares the tangent plane of the limit at `corner` of `face`. A semi-sharp feature has no say: it is gone in the limit.
 pub fn tangent_plane(topology: &Topology, face: u32, corner: u32) -> TangentPlane {
     let vertex = topology.face(face)[corner as usize];
-    let sharp = topology.sharp_edges(vertex).count();
-    match rule(topology.vertex_sharpness(vertex), sharp) {
+    let sharp = topology.sharp_edges(vertex);
+    let sharp = sharp.filter(|&edge| is_infinite(topology.edge(edge).sharpness));
+    let sharpness = Some(topology.vertex_sharpness(vertex)).filter(|&own| is_infinite(own));
+    match rule(sharpness.unwrap_or_default(), sharp.count()) {
         Rule::Smooth | Rule::Dart => TangentPlane::Vertex,
         Rule::Crease => TangentPlane::Sector(topology.fan(face, corner).faces[0]),
         Rule::Corner => TangentPlane::Face(face),
     }
+}
+
+/// Two directions for a sector whose own tangents may cancel, or None for other planes: where both ends of its crease are in one place, as at the end
+/// of a slit, the crease has no direction there. These are the edges' wave once around, as if its faces closed.
+pub fn closing_tangents(topology: &Topology, face: u32, corner: u32) -> Option<[Mask; 2]> {
+    let fan = topology.fan(face, corner);
+    let k = fan.faces.len();
+    let sector = matches!(
+        tangent_plane(topology, face, corner),
+        TangentPlane::Sector(_)
+    );
+    if !sector || k < 3 {
+        return None;
+    }
+    let wave = |f: fn(f64) -> f64| -> Mask {
+        let end = |i: usize| topology.edge(fan.edges[i]).other(fan.vertex);
+        (0..k)
+            .map(|i| (end(i), f(2.0 * PI * i as f64 / k as f64)))
+            .collect()
+    };
+    Some([wave(f64::cos), wave(f64::sin)])
 }
 
 /// Whether the limit has a cusp at `corner` of `face`: each face of the [`fan`](Topology::fan) has a tangent plane of its own. A semi-sharp feature

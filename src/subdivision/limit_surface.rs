@@ -3,13 +3,14 @@
 use glam::{DVec2, DVec3};
 
 use crate::mesh::topology::Topology;
-use crate::mesh::{ControlMesh, Placement, Scheme, power_of_two_in};
+use crate::mesh::{ControlMesh, Placement, Scheme};
 use crate::patch::bspline;
 use crate::subdivision::cell::SchemeCell;
-use crate::subdivision::limit::{LimitStencil, limit_stencil};
+use crate::subdivision::jet::{Jet, Sum};
+use crate::subdivision::limit::limit_stencil;
 use crate::subdivision::masks::Blend;
 use crate::subdivision::refine::{Refinement, refine, with_neighbours};
-use crate::subdivision::regular::bspline_patch;
+use crate::subdivision::regular::{BsplinePatch, bspline_patch};
 use crate::subdivision::schemes::rings;
 use crate::subdivision::split::refine_all;
 
@@ -22,23 +23,16 @@ pub struct LimitSample {
     pub du: DVec3,
     /// Derivative by v.
     pub dv: DVec3,
+    pub(super) normal: DVec3,
 }
 
 impl LimitSample {
-    /// The unit normal, on the side from which the face runs counter-clockwise; zero where the tangents are parallel.
+    /// The unit normal, on the side from which the surface's parameters run counter-clockwise: the face's own, unless the surface folds over.
+    ///
+    /// It is that of `du` and `dv` where they span a plane, beyond what rounding leaves of sums that cancel. Elsewhere, and at cusps, it is the
+    /// normal of the surface nearby, see [`LimitSurface`]; zero where there is none either.
     pub fn normal(&self) -> DVec3 {
-        unit(unit(self.du).cross(unit(self.dv)))
-    }
-}
-
-/// Unit length, or zero where there is no direction. Scaled by a power of two first: no square leaves the range of f64, and vectors of every such
-/// scale have the same bits.
-fn unit(v: DVec3) -> DVec3 {
-    let greatest = v.abs().max_element();
-    if greatest > 0.0 && greatest.is_finite() {
-        (v / power_of_two_in(greatest)).normalize()
-    } else {
-        DVec3::ZERO
+        self.normal
     }
 }
 
@@ -52,25 +46,33 @@ fn unit(v: DVec3) -> DVec3 {
 /// (0,0) is its first vertex, (1,0) the second and (0,1) the third. Of a quad v0 v1 v2 v3,
 /// (0,0) is v0, (1,0) v1, (1,1) v2 and (0,1) v3; of corner i of an n-gon, (0,0) is the corner, (1,0) the middle of the edge that leaves
 /// it, (1,1) the face's centre and (0,1) the middle of the edge that arrives.
+///
+/// A normal is taken of the derivatives where these span a plane. Where they cancel, and at corners whose faces have a tangent plane each
+/// ([`TangentPlane::Face`](crate::subdivision::TangentPlane::Face)), it is taken *nearby*: of the derivatives at (1/64, 1/64) from the corner on the same ptex face. At a cusp that
+/// differs from the limit as much as the limit does from the rest of the picture. All this is decided by `normals.rs` beside this file.
 #[derive(Clone, Debug)]
 pub struct LimitSurface {
     topology: Topology,
     /// A power of two about as large as the mesh: whatever that is, it then gives the same bits, and nothing over- or underflows.
     scale: f64,
     /// Over the scale.
-    positions: Vec<DVec3>,
+    pub(super) positions: Vec<DVec3>,
     ptex: Vec<(u32, u32)>,
     scheme: Scheme,
+    /// Half a unit in the last place of the greatest coordinate over the scale: what the mesh itself may have been rounded by.
+    pub(super) grain: f64,
 }
 
 /// A face in its surroundings at some level.
 struct Cell {
     topology: Topology,
+    /// Relative to the origin, which is one of the face's vertices: so rounding stays small beside the face, however deep its level.
     positions: Vec<DVec3>,
+    origin: DVec3,
 }
 
 /// Refinement halves the distance to an extraordinary vertex; after so many halvings nothing of an f64 is left.
-const DEEPEST: u32 = 60;
+const DEEPEST: i32 = 60;
 
 impl LimitSurface {
     /// The limit of a mesh under its own scheme.
@@ -111,8 +113,10 @@ impl LimitSurface {
             let corners = if scheme.is_whole(arity) { 1 } else { arity };
             (0..corners).map(move |corner| (face, corner as u32))
         });
+        let greatest = positions.iter().map(|p| p.abs().max_element());
         LimitSurface {
             ptex: ptex.collect(),
+            grain: greatest.fold(0.0, f64::max) * 0.5 * f64::EPSILON,
             topology,
             scale,
             positions,
@@ -133,6 +137,11 @@ impl LimitSurface {
     /// The position of a vertex of the mesh, which is not its limit; the origin for one that no face uses.
     pub fn position(&self, vertex: u32) -> DVec3 {
         self.scale * self.positions[vertex as usize]
+    }
+
+    /// The scheme.
+    pub fn scheme(&self) -> Scheme {
+        self.scheme
     }
 
     /// The topology with its final sharpness.
@@ -160,21 +169,37 @@ impl LimitSurface {
         if self.topology.is_hole(face) || u.is_nan() || v.is_nan() {
             return None;
         }
-        let uv = DVec2::new(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
-        let sample = match self.scheme {
+        // Nearer to an edge than this, nothing of an f64 is left.
+        let snapped = |x: f64| {
+            if x < 0.5f64.powi(DEEPEST) {
+                0.0
+            } else {
+                x.min(1.0)
+            }
+        };
+        let uv = DVec2::new(snapped(u), snapped(v));
+        let jet = self.jet(face, corner, uv);
+        Some(LimitSample {
+            position: self.scale * jet.position,
+            du: self.scale * jet.du.value,
+            dv: self.scale * jet.dv.value,
+            normal: self.normal(face, corner, uv, &jet),
+        })
+    }
+
+    /// Position and derivatives at (u, v) of the ptex face of a corner.
+    pub(super) fn jet(&self, face: u32, corner: u32, uv: DVec2) -> Jet {
+        let jet = match self.scheme {
             Scheme::CatmullClark => self.catmull_clark(face, corner, uv),
             Scheme::Bilinear => self.bilinear(face, corner, uv),
             Scheme::Loop | Scheme::Butterfly | Scheme::LoopStam => self.by_rules(face, corner, uv),
         };
-        Some(LimitSample {
-            position: self.scale * sample.position,
-            du: self.scale * sample.du,
-            dv: self.scale * sample.dv,
-        })
+        // The weights of a derivative over the mesh's own vertices sum to a few units.
+        jet.blurred(8.0 * self.grain)
     }
 
-    fn catmull_clark(&self, face: u32, corner: u32, mut uv: DVec2) -> LimitSample {
-        let mut cell = self.surroundings(face);
+    fn catmull_clark(&self, face: u32, corner: u32, mut uv: DVec2) -> Jet {
+        let mut cell = self.surroundings(face, self.nearest_vertex(face, corner, uv));
         if cell.topology.face(0).len() != 4 {
             cell = cell.child(corner);
         }
@@ -183,10 +208,10 @@ impl LimitSurface {
             if let Some(corner) =
                 corner_at(uv).or_else(|| (depth == DEEPEST).then(|| nearest_corner(uv)))
             {
-                return scaled(cell.limit(corner), scale);
+                return cell.limit(corner).scaled(scale);
             }
-            if let Some(sample) = cell.regular(uv) {
-                return scaled(sample, scale);
+            if let Some(jet) = cell.regular(uv) {
+                return jet.scaled(scale);
             }
             let corner = nearest_corner(uv);
             cell = cell.child(corner);
@@ -198,7 +223,7 @@ impl LimitSurface {
     }
 
     /// Any scheme, with its rules alone. Slower than [`LimitSurface::catmull_clark`], which refines no more than it needs.
-    fn by_rules(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
+    fn by_rules(&self, face: u32, corner: u32, uv: DVec2) -> Jet {
         let triangle = self.topology.face(face).len() == 3;
         let uv = if triangle {
             DVec2::new(uv.x, uv.y.min(1.0 - uv.x))
@@ -210,23 +235,25 @@ impl LimitSurface {
             faces = with_neighbours(&self.topology, &faces);
         }
         let (topology, vertices) = self.topology.excerpt(&faces);
-        let position = |&vertex: &u32| self.positions[vertex as usize];
+        let origin = self.positions[self.nearest_vertex(face, corner, uv)];
+        let position = |&vertex: &u32| self.positions[vertex as usize] - origin;
         let cell = SchemeCell {
             topology,
             positions: vertices.iter().map(position).collect(),
+            origin,
             scheme: self.scheme,
         };
         cell.evaluate(corner, uv)
     }
 
-    fn bilinear(&self, face: u32, corner: u32, uv: DVec2) -> LimitSample {
-        let points: Vec<DVec3> = self
-            .topology
-            .face(face)
+    fn bilinear(&self, face: u32, corner: u32, uv: DVec2) -> Jet {
+        let vertices = self.topology.face(face);
+        let (n, i) = (vertices.len(), corner as usize);
+        let origin = self.positions[vertices[i] as usize];
+        let points: Vec<DVec3> = vertices
             .iter()
-            .map(|&v| self.positions[v as usize])
+            .map(|&v| self.positions[v as usize] - origin)
             .collect();
-        let (n, i) = (points.len(), corner as usize);
         let [a, b, c, d] = if n == 4 {
             [points[0], points[1], points[2], points[3]]
         } else {
@@ -238,79 +265,102 @@ impl LimitSurface {
                 (points[i] + points[(i + n - 1) % n]) / 2.0,
             ]
         };
-        LimitSample {
-            position: a.lerp(b, uv.x).lerp(d.lerp(c, uv.x), uv.y),
-            du: (b - a).lerp(c - d, uv.y),
-            dv: (d - a).lerp(c - b, uv.x),
+        Jet {
+            position: origin + a.lerp(b, uv.x).lerp(d.lerp(c, uv.x), uv.y),
+            du: Sum::between(a, b) * (1.0 - uv.y) + Sum::between(d, c) * uv.y,
+            dv: Sum::between(a, d) * (1.0 - uv.x) + Sum::between(b, c) * uv.x,
         }
     }
 
+    /// The vertex of a face that is nearest to (u, v) of the ptex face of a corner.
+    fn nearest_vertex(&self, face: u32, corner: u32, uv: DVec2) -> usize {
+        let vertices = self.topology.face(face);
+        let nearest = match vertices.len() {
+            3 if self.scheme.is_whole(3) => u32::from(uv.x >= 0.5) + 2 * u32::from(uv.y >= 0.5),
+            4 => nearest_corner(uv),
+            _ => corner,
+        };
+        vertices[nearest.min(vertices.len() as u32 - 1) as usize] as usize
+    }
+
     /// A face with all that touches it, as a mesh of its own whose face 0 it is.
-    fn surroundings(&self, face: u32) -> Cell {
+    fn surroundings(&self, face: u32, vertex: usize) -> Cell {
         let (topology, vertices) = self
             .topology
             .excerpt(&with_neighbours(&self.topology, &[face]));
+        let origin = self.positions[vertex];
         Cell {
             topology,
             positions: vertices
                 .iter()
-                .map(|&v| self.positions[v as usize])
+                .map(|&v| self.positions[v as usize] - origin)
                 .collect(),
+            origin,
         }
     }
+}
+
+/// Makes points relative to one of them, and that to what it was relative to.
+pub(super) fn recentred(points: &mut [DVec3], origin: &mut DVec3, vertex: u32) {
+    let at = points[vertex as usize];
+    points.iter_mut().for_each(|point| *point -= at);
+    *origin += at;
 }
 
 impl Cell {
     /// The child at a corner.
     fn child(&self, corner: u32) -> Cell {
         let refined = refine(&self.topology, &[(0, corner)]);
-        let positions = refined
+        let mut positions: Vec<DVec3> = refined
             .masks
             .iter()
             .map(|mask| DVec3::blend(mask, &self.positions))
             .collect();
+        // An n-gon's child begins at the corner.
+        let corner = if self.topology.face(0).len() == 4 {
+            corner
+        } else {
+            0
+        };
+        let mut origin = self.origin;
+        let vertex = refined.topology.face(0)[corner as usize];
+        recentred(&mut positions, &mut origin, vertex);
         Cell {
             topology: refined.topology,
             positions,
+            origin,
         }
     }
 
     /// The limit at a corner, after as many refinements as its sharpness and its faces' arities ask for.
-    fn limit(&self, corner: u32) -> LimitSample {
+    fn limit(&self, corner: u32) -> Jet {
         match limit_stencil(&self.topology, 0, corner) {
-            Some(LimitStencil { position, du, dv }) => LimitSample {
-                position: DVec3::blend(&position, &self.positions),
-                du: DVec3::blend(&du, &self.positions),
-                dv: DVec3::blend(&dv, &self.positions),
-            },
-            None => scaled(self.child(corner).limit(corner), 2.0),
+            Some(stencil) => Jet::of(&stencil, &self.positions).moved(self.origin),
+            None => self.child(corner).limit(corner).scaled(2.0),
         }
     }
 
     /// The B-spline at (u, v), when the face is one without semi-sharp creases.
-    fn regular(&self, uv: DVec2) -> Option<LimitSample> {
+    fn regular(&self, uv: DVec2) -> Option<Jet> {
         let patch = bspline_patch(&self.topology, 0).filter(|patch| patch.crease.is_none())?;
-        let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
-        let mut sample = LimitSample {
-            position: DVec3::ZERO,
-            du: DVec3::ZERO,
-            dv: DVec3::ZERO,
-        };
-        for (i, point) in patch.points.iter().enumerate() {
-            let point = DVec3::blend(&point.mask(), &self.positions);
-            sample.position += point * u.value[i % 4] * v.value[i / 4];
-            sample.du += point * u.derivative[i % 4] * v.value[i / 4];
-            sample.dv += point * u.value[i % 4] * v.derivative[i / 4];
-        }
-        Some(sample)
+        Some(bspline_jet(&patch, &self.positions, uv).moved(self.origin))
     }
 }
 
-pub(super) fn scaled(sample: LimitSample, scale: f64) -> LimitSample {
-    LimitSample {
-        du: sample.du * scale,
-        dv: sample.dv * scale,
-        ..sample
+/// A B-spline patch at (u, v).
+pub(super) fn bspline_jet(patch: &BsplinePatch, positions: &[DVec3], uv: DVec2) -> Jet {
+    let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
+    let points = patch
+        .points
+        .map(|point| DVec3::blend(&point.mask(), positions));
+    let sum = |u: [f64; 4], v: [f64; 4]| {
+        let weights: [(u32, f64); 16] = std::array::from_fn(|i| (i as u32, u[i % 4] * v[i / 4]));
+        Sum::of(&weights, &points)
+    };
+    Jet {
+        position: sum(u.value, v.value).value,
+        du: sum(u.derivative, v.value),
+        dv: sum(u.value, v.derivative),
     }
 }
 

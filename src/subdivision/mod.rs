@@ -4,9 +4,11 @@ mod box_patch;
 mod cell;
 mod curve;
 mod deep;
+mod jet;
 mod limit;
 mod limit_surface;
 mod masks;
+mod normals;
 mod refine;
 mod regular;
 mod schemes;
@@ -15,8 +17,11 @@ mod split;
 pub use crate::mesh::Scheme;
 pub use box_patch::box_spline_patch;
 pub use curve::{EdgeCurve, edge_curve};
-pub use deep::deep_limit;
-pub use limit::{LimitStencil, TangentPlane, is_cusp, limit_stencil, tangent_plane};
+pub(crate) use deep::orthonormal;
+pub use deep::{deep_limit, tangents_nearby};
+pub use limit::{
+    LimitStencil, TangentPlane, closing_tangents, is_cusp, limit_stencil, tangent_plane,
+};
 pub use limit_surface::{LimitSample, LimitSurface};
 pub use masks::{Blend, Mask, edge_point, face_point, vertex_point};
 pub use refine::{Refinement, refine, refine_edge};

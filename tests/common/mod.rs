@@ -7,6 +7,7 @@ pub mod flow;
 #[cfg(feature = "host")]
 pub mod gpu;
 pub mod meshes;
+pub mod planar;
 pub mod spirv;
 pub mod surfaces;
 

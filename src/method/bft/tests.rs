@@ -420,15 +420,17 @@ impl Shading {
     }
 }
 
-/// The sum of the cross products at a vertex' corners, of unit length.
+/// The sum of the areas of the faces at a vertex, of unit length.
 fn vertex_normals(topology: &Topology, positions: &[DVec3]) -> Vec<DVec3> {
     let mut normals = vec![DVec3::ZERO; positions.len()];
     for face in 0..topology.face_count() as u32 {
         let vertices = topology.face(face);
-        let n = vertices.len();
-        for corner in 0..n {
-            let at = |i: usize| positions[vertices[(corner + i) % n] as usize];
-            normals[vertices[corner] as usize] += (at(1) - at(0)).cross(at(n - 1) - at(0));
+        let spoke = |i: usize| positions[vertices[i] as usize] - positions[vertices[0] as usize];
+        let area: DVec3 = (1..vertices.len() - 1)
+            .map(|i| spoke(i).cross(spoke(i + 1)))
+            .sum();
+        for &vertex in vertices {
+            normals[vertex as usize] += area;
         }
     }
     normals

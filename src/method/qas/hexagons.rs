@@ -2,16 +2,19 @@
 //! control vertices, made once a topology.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::abi;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
-use crate::subdivision::{Blend, LimitStencil, Mask, Refinement, deep_limit, is_cusp, refine_all};
+use crate::subdivision::{
+    Blend, LimitStencil, Mask, Refinement, closing_tangents, deep_limit, is_cusp, refine_all,
+    tangents_nearby,
+};
 
 /// The points of all hexagons. One a vertex of the refined mesh, more where infinite creases part its faces into sectors. At a cusp, where each
-/// face has a tangent plane of its own, a sector has the mean of their normals: so normals agree along its smooth edges.
+/// face has a normal of its own, a sector has the mean of these: so normals agree along its smooth edges.
 pub struct Hexagons {
     /// How they are computed.
     pub points: Points,
@@ -20,6 +23,8 @@ pub struct Hexagons {
     numbers: FxHashMap<(u32, u32), u32>,
     /// How many points a vertex of the refined mesh has.
     counts: Vec<u32>,
+    /// The vertices whose points stand for several normals.
+    cusps: FxHashSet<u32>,
 }
 
 /// What a point stands for.
@@ -27,8 +32,20 @@ struct Place {
     vertex: u32,
     /// The lowest face of its sector.
     face: u32,
-    /// At a cusp all faces of the sector, else none.
-    cusp: Vec<u32>,
+    kind: Kind,
+}
+
+/// How a point comes to its normal, in the order in which points stand.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// By the limit's tangents.
+    Limit,
+    /// Likewise, or by others where these cancel.
+    Closing,
+    /// Between two sharp edges of a single face: likewise, or by tangents nearby.
+    Single,
+    /// At a cusp: by tangents nearby on all these faces of the sector.
+    Cusp(Vec<u32>),
 }
 
 /// A place that is not numbered yet.
@@ -51,26 +68,39 @@ impl Hexagons {
             for (corner, &vertex) in (0..).zip(refined.face(face)) {
                 let sector = sector(&refined, face, corner);
                 numbers.entry((vertex, sector[0])).or_insert_with(|| {
-                    let cusp = is_cusp(&refined, face, corner) && sector.len() > 1;
+                    let (lowest, closing) = (sector[0], closing_tangents(&refined, face, corner));
+                    let kind = match sector.len() {
+                        1 => Kind::Single,
+                        _ if is_cusp(&refined, face, corner) => Kind::Cusp(sector),
+                        _ if closing.is_some() => Kind::Closing,
+                        _ => Kind::Limit,
+                    };
                     counts[vertex as usize] += 1;
                     places.push(Place {
                         vertex,
-                        face: sector[0],
-                        cusp: if cusp { sector } else { Vec::new() },
+                        face: lowest,
+                        kind,
                     });
                     UNNUMBERED
                 });
             }
         }
-        // Points whose normals are means come last, in a row.
-        places.sort_by_key(|place| !place.cusp.is_empty());
+        // Points that come to their normals alike stand in a row.
+        places.sort_by(|a, b| a.kind.cmp(&b.kind));
         for (number, place) in (0..).zip(&places) {
             numbers.insert((place.vertex, place.face), number);
         }
-        let stencil =
-            |&(vertex, face): &(u32, u32)| stencil(&refined, scheme, face, vertex, &masks);
+        let rows = Rows {
+            refined: &refined,
+            scheme,
+            masks: &masks,
+        };
+        let cusps = places
+            .iter()
+            .filter(|place| matches!(place.kind, Kind::Cusp(_)));
         Hexagons {
-            points: rows(&places, stencil),
+            points: rows.points(&places),
+            cusps: cusps.map(|place| place.vertex).collect(),
             refined,
             numbers,
             counts,
@@ -89,31 +119,12 @@ impl Hexagons {
                 _ => (child(3), (i as u32 + 2) % 3),
             };
             let vertex = self.refined.face(child)[corner as usize];
-            if self.counts[vertex as usize] > 1 {
+            if self.counts[vertex as usize] > 1 || self.cusps.contains(&vertex) {
                 flags |= super::creased(i);
             }
             self.numbers[&(vertex, sector(&self.refined, child, corner)[0])]
         });
         (points, flags)
-    }
-}
-
-/// The limit at a vertex of the refined mesh, seen from a face, over the control vertices.
-fn stencil(
-    refined: &Topology,
-    scheme: Scheme,
-    face: u32,
-    vertex: u32,
-    masks: &[Mask],
-) -> LimitStencil {
-    let corner = refined.face(face).iter().position(|&v| v == vertex);
-    let corner = corner.expect("the face has this vertex") as u32;
-    let limit = deep_limit(refined, scheme, face, corner);
-    let over_controls = |mask: &Mask| Mask::blend(mask, masks);
-    LimitStencil {
-        position: over_controls(&limit.position),
-        du: over_controls(&limit.du),
-        dv: over_controls(&limit.dv),
     }
 }
 
@@ -124,40 +135,104 @@ fn sector(topology: &Topology, face: u32, corner: u32) -> Vec<u32> {
     faces
 }
 
-/// The rows: limits of all places, limits as each face at a cusp sees them, and the means of those. All points of a vertex have the position of
-/// the first: the same bits whatever rounding did to the others.
-fn rows(places: &[Place], stencil: impl Fn(&(u32, u32)) -> LimitStencil + Sync) -> Points {
-    let mut points = Points::default();
-    let mut positions: FxHashMap<u32, Mask> = FxHashMap::default();
-    let mut limits = |points: &mut Points, seen: &[(u32, u32)]| {
-        let stencils: Vec<LimitStencil> = seen.par_iter().map(&stencil).collect();
-        for (&(vertex, _), stencil) in seen.iter().zip(&stencils) {
-            let position = positions
-                .entry(vertex)
-                .or_insert_with(|| stencil.position.clone());
-            points.push(Row::Limit([position, &stencil.du, &stencil.dv]));
+/// What the rows are made of.
+struct Rows<'a> {
+    refined: &'a Topology,
+    scheme: Scheme,
+    /// Of each vertex of the refined mesh, over the control vertices.
+    masks: &'a [Mask],
+}
+
+/// So many halvings lead from a vertex of the refined mesh to the surroundings that the truth asks, 1/64 away in the control mesh.
+const HALVINGS: u32 = 5;
+
+impl Rows<'_> {
+    /// Limits of all places, and what else their normals come from. All points of a vertex have the position of the first: the same bits whatever
+    /// rounding did to the others.
+    fn points(&self, places: &[Place]) -> Points {
+        let mut points = Points::default();
+        let of_kind = |kind: fn(&Kind) -> bool| {
+            let first = places.iter().position(|place| kind(&place.kind));
+            let found = places.iter().filter(move |place| kind(&place.kind));
+            (first.unwrap_or(0) as u32, found.collect::<Vec<_>>())
+        };
+        let limits: Vec<LimitStencil> = places
+            .par_iter()
+            .map(|place| self.limit(place.face, place.vertex))
+            .collect();
+        let mut positions: FxHashMap<u32, Mask> = FxHashMap::default();
+        points.begin(abi::POINTS_LIMIT, 0);
+        for (place, LimitStencil { position, du, dv }) in places.iter().zip(&limits) {
+            let position = &*positions
+                .entry(place.vertex)
+                .or_insert_with(|| position.clone());
+            points.push(match place.kind {
+                Kind::Single => Row::Firm([position, du, dv]),
+                _ => Row::Limit([position, du, dv]),
+            });
         }
-    };
-    points.begin(abi::POINTS_LIMIT, 0);
-    let seen: Vec<(u32, u32)> = places
-        .iter()
-        .map(|place| (place.vertex, place.face))
-        .collect();
-    limits(&mut points, &seen);
-    let cusps = places.iter().filter(|place| !place.cusp.is_empty());
-    let first = places.len() - cusps.clone().count();
-    let seen: Vec<(u32, u32)> = cusps
-        .clone()
-        .flat_map(|place| place.cusp.iter().map(|&face| (place.vertex, face)))
-        .collect();
-    let mut next = places.len() as u32;
-    points.begin(abi::POINTS_LIMIT, next);
-    limits(&mut points, &seen);
-    points.begin(abi::POINTS_NORMALS, first as u32);
-    for place in cusps {
-        let faces = next..next + place.cusp.len() as u32;
-        next = faces.end;
-        points.push(Row::Normals(&faces.map(|face| (face, 1.0)).collect()));
+        let (first, closing) = of_kind(|kind| *kind == Kind::Closing);
+        points.begin(abi::POINTS_SPARE, first);
+        for place in closing {
+            let corner = self.corner(place.face, place.vertex);
+            let closing = closing_tangents(self.refined, place.face, corner);
+            let closing = closing.expect("places of this kind have them");
+            self.push(&mut points, place.vertex, closing);
+        }
+        let (first, single) = of_kind(|kind| *kind == Kind::Single);
+        points.begin(abi::POINTS_NEARBY, first);
+        for place in single {
+            self.push(
+                &mut points,
+                place.vertex,
+                self.nearby(place.face, place.vertex),
+            );
+        }
+        let (first, cusps) = of_kind(|kind| matches!(kind, Kind::Cusp(_)));
+        let faces = |place: &Place| match &place.kind {
+            Kind::Cusp(faces) => faces.clone(),
+            _ => Vec::new(),
+        };
+        let mut next = places.len() as u32;
+        points.begin(abi::POINTS_LIMIT, next);
+        for place in &cusps {
+            for face in faces(place) {
+                self.push(&mut points, place.vertex, self.nearby(face, place.vertex));
+            }
+        }
+        points.begin(abi::POINTS_NORMALS, first);
+        for place in cusps {
+            let numbers = next..next + faces(place).len() as u32;
+            next = numbers.end;
+            points.push(Row::Normals(&numbers.map(|face| (face, 1.0)).collect()));
+        }
+        points
     }
-    points
+
+    /// Adds a row of tangents over the vertices of the refined mesh, about a vertex.
+    fn push(&self, points: &mut Points, vertex: u32, tangents: [Mask; 2]) {
+        let [du, dv] = tangents.map(|mask| Mask::blend(&mask, self.masks));
+        points.push(Row::Limit([&self.masks[vertex as usize], &du, &dv]));
+    }
+
+    fn corner(&self, face: u32, vertex: u32) -> u32 {
+        let corner = self.refined.face(face).iter().position(|&v| v == vertex);
+        corner.expect("the face has this vertex") as u32
+    }
+
+    /// The limit at a vertex of the refined mesh, seen from a face, over the control vertices.
+    fn limit(&self, face: u32, vertex: u32) -> LimitStencil {
+        let limit = deep_limit(self.refined, self.scheme, face, self.corner(face, vertex));
+        let over_controls = |mask: &Mask| Mask::blend(mask, self.masks);
+        LimitStencil {
+            position: over_controls(&limit.position),
+            du: over_controls(&limit.du),
+            dv: over_controls(&limit.dv),
+        }
+    }
+
+    fn nearby(&self, face: u32, vertex: u32) -> [Mask; 2] {
+        let corner = self.corner(face, vertex);
+        tangents_nearby(self.refined, self.scheme, face, corner, HALVINGS)
+    }
 }

@@ -14,7 +14,8 @@ use crate::method::quadtree::plain::{
     edge_rows, is_plain_edge, is_plain_vertex, is_turned_corner, vertex_rows,
 };
 use crate::plan::{
-    Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, VertexKind, VertexPlan,
+    Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, Side, VertexKind,
+    VertexPlan,
 };
 
 /// An irregular patch: its part, its ring, and the number of its plan.
@@ -295,6 +296,17 @@ impl Plain<'_> {
     }
 }
 
+/// The flags of a corner.
+fn side_flags(side: Side, creased: bool) -> u32 {
+    let flag = |set: bool, flag: u32| if set { flag } else { 0 };
+    abi::USE_LIMIT
+        | flag(creased, abi::USE_CREASED)
+        | flag(side.spare, abi::USE_SPARE)
+        | side
+            .pair
+            .map_or(abi::USE_CUSP, |pair| pair << abi::USE_SIDE_SHIFT)
+}
+
 impl Builder<'_> {
     fn border(&mut self, patch: &Irregular) -> abi::Border {
         let (topology, turn) = (self.topology, patch.turn(self.topology));
@@ -303,6 +315,7 @@ impl Builder<'_> {
         let mut border = abi::Border::default();
         border.plans[0] = patch.plan;
         border.roots[0] = self.packed.headers[patch.plan as usize].root;
+        border.nearby = self.packed.nearby[patch.plan as usize];
         let mut places = Vec::new();
         let mut plain = Plain {
             ring,
@@ -339,14 +352,12 @@ impl Builder<'_> {
             match self.vertices.known.get(&point) {
                 Some((ring, plan)) => {
                     let local = ring.faces.iter().position(|&face| face == patch.part.face);
-                    let pairs = &self.vertices.plans[*plan].pairs;
-                    let pair = match point {
-                        Point::Vertex(_) => pairs[local.expect("the face has the vertex")],
-                        Point::Centre(_) => pairs[0],
+                    let planned = &self.vertices.plans[*plan];
+                    let side = match point {
+                        Point::Vertex(_) => planned.sides[local.expect("the face has the vertex")],
+                        Point::Centre(_) => planned.sides[0],
                     };
-                    let creased = pairs.iter().any(|&other| other != pairs[0]);
-                    let creased = if creased { abi::USE_CREASED } else { 0 };
-                    border.flags[number] = abi::USE_LIMIT | creased | pair << abi::USE_SIDE_SHIFT;
+                    border.flags[number] = side_flags(side, planned.planes > 1);
                     self.planned(
                         &mut border,
                         number,
@@ -428,7 +439,8 @@ impl Builder<'_> {
                 let level = level + deeper;
                 match border.flags[number] & abi::USE_LIMIT {
                     0 => self.packed.headers[border.plans[number] as usize].counts[level],
-                    _ => 3,
+                    // Position and normal.
+                    _ => 2,
                 }
             });
             abi::USES + border.plain_count + points.sum::<u32>()

@@ -142,16 +142,13 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
     };
     let local: Vec<Vec3> = ring.iter().map(|&point| point - origin).collect();
     let side = flags >> abi::USE_SIDE_SHIFT;
-    let surface = if flags & abi::USE_LIMIT != 0 {
-        let stencil = |number: u32| one_use.point(&local, number);
-        Surface {
-            position: stencil(0),
-            du: stencil(1 + 2 * side),
-            dv: stencil(2 + 2 * side),
-        }
-    } else {
-        one_use.evaluate(&local, uv, side)
-    };
+    if flags & abi::USE_LIMIT != 0 {
+        return SurfacePoint {
+            position: one_use.point(&local, 0) + origin,
+            normal: one_use.vertex_normal(&given.vertices, flags),
+        };
+    }
+    let surface = one_use.evaluate(&local, uv, side);
     let Surface { position, du, dv } = turned(surface, flags >> abi::USE_TURN_SHIFT & 3);
     // Half of the edge is the whole patch.
     let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
@@ -186,18 +183,18 @@ fn turned(Surface { position, du, dv }: Surface, quarters: u32) -> Surface {
 }
 
 /// What a patch is evaluated by at some place.
-struct Use<'a> {
-    pass: &'a Pass,
-    plans: Plans<'a>,
-    border: &'a abi::Border,
+pub(super) struct Use<'a> {
+    pub(super) pass: &'a Pass,
+    pub(super) plans: Plans<'a>,
+    pub(super) border: &'a abi::Border,
     /// Where the patch's ring begins.
-    controls: u32,
-    number: usize,
+    pub(super) controls: u32,
+    pub(super) number: usize,
 }
 
 impl Use<'_> {
     /// Where its control vertices are.
-    fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
+    pub(super) fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
         let vertex = |place: u32| self.pass.controls[(self.controls + place) as usize];
         let place = |start: u32, i: u32| self.pass.controls[(start + i) as usize];
         let plan = self.border.plans[self.number];
@@ -272,6 +269,11 @@ fn weighted_sum(points: &[Vec3], weights: &[f32]) -> Vec3 {
     if points.len() <= abi::CONTROL_INVOCATIONS as usize {
         return terms.fold(Vec3::ZERO, |sum, term| sum + term);
     }
+    compensated_sum(terms)
+}
+
+/// The sum of many terms, by what rounding takes away from each step (Kahan 1965).
+pub(super) fn compensated_sum(terms: impl Iterator<Item = Vec3>) -> Vec3 {
     let (mut sum, mut lost) = (Vec3::ZERO, Vec3::ZERO);
     for term in terms {
         let rest = term - lost;

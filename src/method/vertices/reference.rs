@@ -41,17 +41,18 @@ pub fn models() -> Vec<Model> {
         .collect()
 }
 
-/// The faces by their numbers, in local units. A vertex has the sum of the cross products at all corners there.
+/// The faces by their numbers, in local units. A vertex has the sum of the areas of all faces there.
 fn faces(model: &Model) -> Vec<Face> {
     let mesh = model.mesh();
     let at = |vertex: u32| model.placement().local(mesh.positions()[vertex as usize]);
     let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
     for face in mesh.faces() {
-        for (i, &vertex) in face.iter().enumerate() {
-            let next = face[(i + 1) % face.len()];
-            let previous = face[(i + face.len() - 1) % face.len()];
-            let cross = (at(next) - at(vertex)).cross(at(previous) - at(vertex));
-            *sums.entry(vertex).or_default() += cross;
+        let spoke = |i: usize| at(face[i]) - at(face[0]);
+        let area: DVec3 = (1..face.len() - 1)
+            .map(|i| spoke(i).cross(spoke(i + 1)))
+            .sum();
+        for &vertex in face {
+            *sums.entry(vertex).or_default() += area;
         }
     }
     let face = |face: &[u32]| Face {

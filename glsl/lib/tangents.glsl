@@ -1,0 +1,42 @@
+// Which sums of tangents are directions, and which are rounding. Twin of `Tangents` in `method/surface.rs`.
+#ifndef TANGENTS_GLSL
+#define TANGENTS_GLSL
+
+#include "lib/unit.glsl"
+
+// A unit of rounding, and how many times its own error a sum has to be to count as a direction.
+const float ROUNDING = 5.9604645e-8;
+const float CLEAR = 4.0;
+
+// Two tangents, each with a bound on its rounding error.
+struct Tangents {
+    vec3 du;
+    vec3 dv;
+    vec2 errors;
+};
+
+float reach(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+// The power of two that brings a vector's greatest element to 2..4, as `scaled` does; 0 where that gives zero.
+float factor(vec3 v) {
+    uint exponent = floatBitsToUint(reach(v)) & EXPONENT;
+    return exponent == 0u || exponent == EXPONENT ? 0.0 : uintBitsToFloat((255u << 23) - exponent);
+}
+
+// Whether they span a plane beyond what rounding may have made of them: by additions and multiplications alone, so that all devices agree.
+bool span_plane(Tangents tangents) {
+    vec3 a = scaled(tangents.du);
+    vec3 b = scaled(tangents.dv);
+    precise vec2 errors = CLEAR * (vec2(factor(tangents.du), factor(tangents.dv)) * tangents.errors);
+    // An element of the product errs by no more than twice each error times the other's greatest element, which is below 4.
+    precise float bound = 8.0 * (errors.x + errors.y);
+    return errors.x < 2.0 && errors.y < 2.0 && reach(exact_cross(a, b)) > bound;
+}
+
+// The unit normal; zero where it is left to rounding.
+vec3 clear_normal(Tangents tangents) {
+    if (!span_plane(tangents)) return vec3(0.0);
+    return unit(exact_cross(unit(tangents.du), unit(tangents.dv)));
+}
+
+#endif

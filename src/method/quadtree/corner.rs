@@ -1,0 +1,88 @@
+//! The normals of vertices, as the control shader decides them: which sums of tangents are directions, and which are rounding. Twin of
+//! `glsl/lib/tangents.glsl`.
+//!
+//! Who shares a vertex's tangent plane decides from the same numbers in the same order, and so gets the same bits.
+
+use glam::Vec3;
+
+use crate::abi;
+use crate::method::quadtree::twin::{Use, compensated_sum};
+use crate::method::surface::{Tangents, UNIT, reach};
+use crate::method::unit::unit;
+
+/// At the corner of a single face: the least sine between the limit's tangents, and the greatest distance between its normal and that nearby, at
+/// which the limit counts; squared. As in `subdivision/normals.rs`.
+const FIRM: f32 = 1.0 / 256.0;
+const NEAR: f32 = 0.25;
+
+/// Sums over a ring. Compensated, they err by some units of rounding of the absolute sum; the ring's own positions by one each.
+fn tangents(ring: &[Vec3], weights: &[f32]) -> Tangents {
+    let origin = ring[0];
+    let (first, second) = weights.split_at(ring.len());
+    let spokes = || ring.iter().map(|&point| point - origin);
+    let one = |weights: &[f32]| {
+        let terms = spokes().zip(weights).map(|(spoke, &weight)| weight * spoke);
+        let (mut spread, mut total) = (0.0, 0.0);
+        for (spoke, weight) in spokes().zip(weights) {
+            spread += weight.abs() * reach(spoke);
+            total += weight.abs();
+        }
+        let error = UNIT * (4.0 * spread + reach(origin) * total);
+        (compensated_sum(terms), error)
+    };
+    let ((du, error_u), (dv, error_v)) = (one(first), one(second));
+    Tangents {
+        sums: [du, dv],
+        errors: [error_u, error_v],
+    }
+}
+
+/// Whether tangents are far from parallel.
+fn are_firm(tangents: &Tangents) -> bool {
+    let normal = unit(tangents.sums[0]).cross(unit(tangents.sums[1]));
+    normal.dot(normal) >= FIRM
+}
+
+impl Use<'_> {
+    /// The normal at a corner of the patch.
+    pub(super) fn vertex_normal(&self, vertices: &[Vec3], flags: u32) -> Vec3 {
+        let nearby = match self.border.nearby[self.number - 5] {
+            abi::NO_PLAN => None,
+            number => Some(self.of(0).tangents(vertices, number).normal()),
+        };
+        if flags & abi::USE_CUSP != 0 {
+            return nearby.unwrap_or(Vec3::ZERO);
+        }
+        let pair = 1 + 2 * (flags >> abi::USE_SIDE_SHIFT);
+        let tangents = self.tangents(vertices, pair);
+        let limit = tangents.normal();
+        match nearby {
+            None if limit == Vec3::ZERO && flags & abi::USE_SPARE != 0 => {
+                self.tangents(vertices, pair + 2).normal()
+            }
+            None => limit,
+            Some(nearby) => {
+                let near = limit - nearby;
+                let firm = are_firm(&tangents) && near.dot(near) < NEAR;
+                if nearby == Vec3::ZERO || firm {
+                    limit
+                } else {
+                    nearby
+                }
+            }
+        }
+    }
+
+    /// Another use of the same patch.
+    fn of(&self, number: usize) -> Use<'_> {
+        Use { number, ..*self }
+    }
+
+    /// The pair of tangents whose first is stencil `number` of the use's plan.
+    fn tangents(&self, vertices: &[Vec3], number: u32) -> Tangents {
+        let ring = self.ring(vertices);
+        let header = self.plans.headers[self.border.plans[self.number] as usize];
+        let first = (header.weights + number * header.ring_size) as usize;
+        tangents(&ring, &self.plans.weights[first..first + 2 * ring.len()])
+    }
+}

@@ -1,0 +1,155 @@
+//! Which normal a sample of the limit has where its own derivatives do not tell, or tell what holds at a single point and nowhere around it.
+
+use glam::{DVec2, DVec3};
+
+use crate::mesh::Scheme;
+use crate::subdivision::Mask;
+use crate::subdivision::jet::{CLEAR, Jet, Sum};
+use crate::subdivision::limit::{TangentPlane, closing_tangents, tangent_plane};
+use crate::subdivision::limit_surface::{LimitSurface, nearest_corner};
+
+/// How far from a corner its surroundings are asked, in ptex coordinates: as near as tess level 64 ever comes, the greatest that Vulkan asks for.
+const NEARBY: f64 = 1.0 / 64.0;
+
+/// At the corner of a single face both sharp edges span the limit's plane. It is taken if the sine between them is at least this, 3.6 degrees from
+/// straight, and if its normal is no farther than this from that nearby, 29 degrees.
+const FIRM: f64 = 1.0 / 16.0;
+const NEAR: f64 = 0.5;
+
+impl LimitSurface {
+    /// The normal at (u, v) of the ptex face of a corner, whose derivatives there are known.
+    pub(super) fn normal(&self, face: u32, corner: u32, uv: DVec2, jet: &Jet) -> DVec3 {
+        let found = match self.vertex_corner(face, corner, uv) {
+            Some(at) if self.scheme() != Scheme::Bilinear => self.at_vertex(face, at, jet),
+            _ => jet.normal().or_else(|| {
+                let inwards = self.towards_middle(face, uv);
+                let nearby = self.jet(face, corner, inwards).normal();
+                nearby.or_else(|| self.of_faces(&[face]))
+            }),
+        };
+        found.unwrap_or(DVec3::ZERO)
+    }
+
+    /// At a corner of the face, that is at a vertex of the mesh.
+    fn at_vertex(&self, face: u32, corner: u32, jet: &Jet) -> Option<DVec3> {
+        let topology = self.topology();
+        let fan = topology.fan(face, corner);
+        let cusp = matches!(tangent_plane(topology, face, corner), TangentPlane::Face(_));
+        let own = || self.nearby(face, corner);
+        let found = match &fan.faces[..] {
+            [_] => self.of_single(jet, own()),
+            _ if cusp => own().or_else(|| jet.normal()),
+            faces => jet
+                .normal()
+                .or_else(|| self.closing(face, corner))
+                .or_else(|| {
+                    let corners = faces.iter().map(|&face| self.corner_of(face, fan.vertex));
+                    let nearby = faces
+                        .iter()
+                        .zip(corners)
+                        .map(|(&face, at)| self.nearby(face, at));
+                    // Unit vectors: below this they cancel.
+                    let sum: DVec3 = nearby.flatten().sum();
+                    (sum.length() > FIRM).then(|| sum.normalize())
+                }),
+        };
+        let asking = if cusp { &[face][..] } else { &fan.faces[..] };
+        found.or_else(|| self.of_faces(asking))
+    }
+
+    /// Of a sector whose crease comes back to where it came from.
+    fn closing(&self, face: u32, corner: u32) -> Option<DVec3> {
+        let topology = self.topology();
+        let [a, b] = closing_tangents(topology, face, corner)?;
+        let centre = self.positions[topology.face(face)[corner as usize] as usize];
+        let of = |mask: &Mask| {
+            let ends = mask
+                .iter()
+                .map(|&(v, _)| self.positions[v as usize] - centre);
+            let weights: Mask = (0..).zip(mask).map(|(i, &(_, w))| (i, w)).collect();
+            Sum::of(&weights, &ends.collect::<Vec<_>>())
+        };
+        let jet = Jet {
+            position: centre,
+            du: of(&a),
+            dv: of(&b),
+        };
+        jet.blurred(8.0 * self.grain).normal()
+    }
+
+    /// Where a single face lies between two sharp edges.
+    fn of_single(&self, jet: &Jet, nearby: Option<DVec3>) -> Option<DVec3> {
+        let limit = jet.normal();
+        let firm = limit.filter(|_| jet.sine() >= FIRM);
+        match (firm, nearby) {
+            (Some(limit), Some(nearby)) if limit.distance(nearby) < NEAR => Some(limit),
+            (_, Some(nearby)) => Some(nearby),
+            (_, None) => limit,
+        }
+    }
+
+    /// Of the derivatives next to a corner.
+    fn nearby(&self, face: u32, corner: u32) -> Option<DVec3> {
+        let (part, uv) = match self.topology().face(face).len() {
+            3 if self.scheme().is_whole(3) => {
+                (0, [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)][corner as usize])
+            }
+            4 => (
+                0,
+                [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][corner as usize],
+            ),
+            _ => (corner, (0.0, 0.0)),
+        };
+        let uv = self.towards_middle(face, DVec2::from(uv));
+        self.jet(face, part, uv).normal()
+    }
+
+    /// A point moved towards the middle of its ptex face: a corner goes to (1/64, 1/64) from itself.
+    fn towards_middle(&self, face: u32, uv: DVec2) -> DVec2 {
+        let middle = match self.topology().face(face).len() {
+            3 if self.scheme().is_whole(3) => 1.0 / 3.0,
+            _ => 0.5,
+        };
+        uv + (DVec2::splat(middle) - uv) * (NEARBY / middle)
+    }
+
+    /// Of the faces of the mesh themselves, by their areas (Newell).
+    fn of_faces(&self, faces: &[u32]) -> Option<DVec3> {
+        let topology = self.topology();
+        let (mut area, mut error) = (DVec3::ZERO, 0.0);
+        for &face in faces {
+            let vertices = topology.face(face);
+            let first = self.positions[vertices[0] as usize];
+            let spoke = |i: usize| self.positions[vertices[i] as usize] - first;
+            for i in 1..vertices.len() - 1 {
+                let [a, b] = [spoke(i), spoke(i + 1)];
+                area += a.cross(b);
+                error +=
+                    self.grain * (a.length() + b.length()) + f64::EPSILON * a.length() * b.length();
+            }
+        }
+        (area.length() > CLEAR * error).then(|| area.normalize())
+    }
+
+    /// The corner of the face at (u, v) of a ptex face, if a vertex of the mesh is there.
+    fn vertex_corner(&self, face: u32, corner: u32, uv: DVec2) -> Option<u32> {
+        let n = self.topology().face(face).len();
+        if n == 3 && self.scheme().is_whole(3) {
+            let corners = [DVec2::ZERO, DVec2::X, DVec2::Y];
+            return (0..).zip(corners).find(|&(_, at)| at == uv).map(|(i, _)| i);
+        }
+        let at_corner = uv.to_array().iter().all(|x| x.fract() == 0.0);
+        match n {
+            _ if !at_corner => None,
+            4 => Some(nearest_corner(uv)),
+            _ => (uv == DVec2::ZERO).then_some(corner),
+        }
+    }
+
+    /// The corner of a face at which it has a vertex.
+    fn corner_of(&self, face: u32, vertex: u32) -> u32 {
+        let mut vertices = self.topology().face(face).iter();
+        let corner = vertices.position(|&v| v == vertex);
+        corner.expect("the faces of a fan have its vertex") as u32
+    }
+}

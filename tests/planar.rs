@@ -6,7 +6,7 @@ mod common;
 use common::planar::{Planar, planar};
 use glam::{DVec3, Vec2};
 use hullform::mesh::{Model, Scheme};
-use hullform::method::{METHODS, MethodOptions, to_ptex};
+use hullform::method::{METHODS, MethodOptions};
 use hullform::subdivision::LimitSurface;
 use hullform::tessellation::Domain;
 
@@ -127,7 +127,6 @@ fn every_method_draws_a_planar_mesh_with_the_planes_normal() {
                     continue;
                 };
                 let controls = prepared.controls(model.positions());
-                let truth = LimitSurface::new(&planar.mesh);
                 for pass in &prepared.passes {
                     for (number, patch) in pass.patches.iter().enumerate() {
                         for uv in PLACES {
@@ -141,16 +140,15 @@ fn every_method_draws_a_planar_mesh_with_the_planes_normal() {
                                 "{scheme} by {}, ptex face {} at {at}",
                                 method.name, patch.ptex
                             );
-                            // An error of the derivatives turns their normal by itself over the sine between them.
-                            let [u, v] = to_ptex(patch, at.to_array()).map(f64::from);
-                            let limit = truth.evaluate(patch.ptex as usize, u, v);
-                            let limit = limit.expect("holes are not drawn");
-                            let sides = limit
-                                .du
-                                .normalize_or_zero()
-                                .cross(limit.dv.normalize_or_zero());
-                            let sine = sides.length().clamp(1.0 / 64.0, 0.125);
-                            hold(&place, &planar, angle, 5e-4 * 0.125 / sine, &mut failures);
+                            // Points of an edge's plan are relative to its first vertex, so that near the other end, 64 times less long than the edge,
+                            // derivatives keep six digits less in binary. That stays within what the method promises of normals.
+                            let on_edge = uv.iter().filter(|x| x.fract() == 0.0).count() == 1;
+                            let bound = if on_edge && method.name == "quadtree" {
+                                3e-3
+                            } else {
+                                5e-4
+                            };
+                            hold(&place, &planar, angle, bound, &mut failures);
                             (worst, points) = (worst.max(angle), points + 1);
                         }
                     }

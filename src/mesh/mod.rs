@@ -18,6 +18,5 @@ pub use control_mesh::{
 pub use model::Model;
 pub use obj::{read_obj, read_obj_bytes};
 pub use placement::Placement;
-pub(crate) use placement::power_of_two_in;
 pub use scheme::Scheme;
 pub use triangulate::{Triangulation, triangulated};

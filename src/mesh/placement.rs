@@ -57,7 +57,7 @@ pub(super) fn bounds(points: impl IntoIterator<Item = DVec3>) -> (DVec3, DVec3) 
 }
 
 /// The greatest power of two that is not greater than a finite `x` above 0; exact for subnormal numbers too.
-pub(crate) fn power_of_two_in(x: f64) -> f64 {
+fn power_of_two_in(x: f64) -> f64 {
     let exponent = x.to_bits() & f64::INFINITY.to_bits();
     if exponent != 0 {
         return f64::from_bits(exponent);

@@ -4,6 +4,7 @@
 // Shading for people who have no renderer of their own: lit, or telling what the surface is made of.
 
 #include "lib/interface.glsl"
+#include "lib/surface.glsl"
 #include "method"
 #include "lib/shading.glsl"
 
@@ -35,18 +36,33 @@ vec3 valence_colour(Patch record) {
     return mix(vec3(0.72), extreme, amount * strength);
 }
 
+// The normal of the side that is seen. That goes by the triangle: at a silhouette one that is seen from its front still has normals that
+// point away from the eye. Where the surface has no normal, or opposite ones meet, the triangle's own will do.
+vec3 seen_normal(vec3 to_eye) {
+    vec3 across = normalize_or_zero(dFdx(in_position));
+    vec3 down = normalize_or_zero(dFdy(in_position));
+    vec3 normal = normalize_or_zero(in_normal);
+    if (normal != vec3(0.0)) return gl_FrontFacing ? normal : -normal;
+    vec3 plane = normalize_or_zero(cross(across, down));
+    if (plane == vec3(0.0)) return to_eye;
+    return dot(plane, to_eye) < 0.0 ? -plane : plane;
+}
+
 void main() {
     Patch record = patch_record(in_patch);
     vec2 pixel = fwidth(in_uv);
-    vec3 normal = normalize(in_normal);
-    vec3 to_eye = normalize(frame.eye - in_position);
-    if (dot(normal, to_eye) < 0.0) normal = -normal;
+    vec3 to_eye = normalize_or_zero(frame.eye - in_position);
+    vec3 normal = seen_normal(to_eye);
+    Axes view = view_axes(frame.view_projection, to_eye);
+    vec3 colour = vec3(0.56, 0.33, 0.22);
+    float gloss = 0.25;
     switch (frame.shading) {
-    case SHADING_NORMAL: out_colour = vec4(0.5 + 0.5 * normalize(in_normal), 1.0); return;
+    case SHADING_NORMAL: out_colour = vec4(0.5 + 0.5 * normalize_or_zero(in_normal), 1.0); return;
     case SHADING_LINES: out_colour = vec4(vec3(0.02), 1.0); return;
-    case SHADING_PATCH: out_colour = vec4(lit(patch_colour(in_patch * 2u + record.ptex), normal, to_eye, 0.25), 1.0); return;
-    case SHADING_NODE: out_colour = vec4(lit(node_colour(record, pixel), normal, to_eye, 0.25), 1.0); return;
-    case SHADING_VALENCE: out_colour = vec4(lit(valence_colour(record), normal, to_eye, 0.25), 1.0); return;
-    default: out_colour = vec4(lit(vec3(0.56, 0.33, 0.22), normal, to_eye, 1.0), 1.0);
+    case SHADING_PATCH: colour = patch_colour(in_patch * 2u + record.ptex); break;
+    case SHADING_NODE: colour = node_colour(record, pixel); break;
+    case SHADING_VALENCE: colour = valence_colour(record); break;
+    default: gloss = 1.0;
     }
+    out_colour = vec4(lit(colour, normal, to_eye, view, gloss), 1.0);
 }

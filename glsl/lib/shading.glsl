@@ -3,20 +3,38 @@
 #define SHADING_GLSL
 
 #include "abi.glsl"
+#include "lib/surface.glsl"
+
+// The axes of a picture in model space: to its right, up, and out of it towards who looks.
+struct Axes {
+    vec3 right;
+    vec3 up;
+    vec3 back;
+};
+
+// They are in the matrix to clip space: w, row 3, grows straight away from the eye, and x, row 0, to the right, if the picture's middle is
+// elsewhere with a share of w. Up follows from both, since a viewport may turn y over. An orthographic w does not grow; then all look along
+// the same line, `to_eye`.
+Axes view_axes(mat4 clip_from_model, vec3 to_eye) {
+    mat4 rows = transpose(clip_from_model);
+    vec3 away = normalize_or_zero(rows[3].xyz);
+    vec3 back = away == vec3(0.0) ? to_eye : -away;
+    vec3 along_x = normalize_or_zero(rows[0].xyz);
+    vec3 right = normalize_or_zero(along_x - dot(along_x, back) * back);
+    return Axes(right, cross(back, right), back);
+}
 
 // A warm key light from above the eye's left, a cool one from behind the right, sky above and ground below; `gloss` is the strength of
-// the highlights.
-vec3 lit(vec3 colour, vec3 normal, vec3 to_eye, float gloss) {
-    vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), to_eye) + vec3(1e-6, 0.0, 0.0));
-    vec3 up = cross(to_eye, right);
-    vec3 key = normalize(to_eye * 0.55 - right * 0.65 + up * 0.80);
-    vec3 back = normalize(right * 0.9 - to_eye * 0.35 + up * 0.35);
+// the highlights. Cosines stay within what powers are defined for, however directions were rounded.
+vec3 lit(vec3 colour, vec3 normal, vec3 to_eye, Axes view, float gloss) {
+    vec3 key = normalize_or_zero(view.back * 0.55 - view.right * 0.65 + view.up * 0.80);
+    vec3 behind = normalize_or_zero(view.right * 0.9 - view.back * 0.35 + view.up * 0.35);
     vec3 ambient = mix(vec3(0.10, 0.09, 0.085), vec3(0.26, 0.30, 0.36), 0.5 + 0.5 * normal.y);
     float key_light = max(dot(normal, key), 0.0);
-    float back_light = max(dot(normal, back), 0.0);
-    vec3 light = ambient + vec3(1.05, 0.98, 0.88) * key_light + vec3(0.20, 0.28, 0.42) * back_light;
-    float highlight = pow(max(dot(normal, normalize(key + to_eye)), 0.0), 60.0);
-    float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
+    float behind_light = max(dot(normal, behind), 0.0);
+    vec3 light = ambient + vec3(1.05, 0.98, 0.88) * key_light + vec3(0.20, 0.28, 0.42) * behind_light;
+    float highlight = pow(clamp(dot(normal, normalize_or_zero(key + to_eye)), 0.0, 1.0), 60.0);
+    float grazing = pow(1.0 - clamp(dot(normal, to_eye), 0.0, 1.0), 5.0);
     return colour * light + gloss * (0.25 * highlight * vec3(1.0, 0.97, 0.92) + grazing * 0.12 * vec3(0.8, 0.9, 1.0));
 }
 

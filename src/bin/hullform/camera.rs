@@ -1,14 +1,17 @@
-//! The camera of a picture: it turns around the model, which fills the frame.
+//! The camera of a picture: it turns around what is drawn, which fills the frame.
 
-use glam::camera::rh::proj::vulkan;
-use glam::{Mat4, Vec2, Vec3};
+use glam::{DMat3, DVec2, DVec3, DVec4, Mat4, Vec3};
 use std::str::FromStr;
 
-/// Half the angle of view over the shorter side, at zoom 1.
-const HALF_VIEW: f32 = 20.0 * std::f32::consts::PI / 180.0;
+/// Half the angle under which the eye sees a sphere around all that is drawn.
+const HALF_VIEW: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
-/// How much of the picture's shorter reach the model takes.
-const MARGIN: f32 = 0.88;
+/// How much of the picture's tighter side is filled.
+const FILL: f64 = 0.9;
+
+/// The room before and behind what is drawn, in radii of that sphere: more than rounding needs, and near what is drawn, so that depths keep
+/// their digits.
+const ROOM: f64 = 0.02;
 
 /// Where the picture is taken from: `--camera YAW,PITCH,ZOOM`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,13 +24,13 @@ pub struct Camera {
     pub zoom: f32,
 }
 
-/// The camera's matrices for one model and picture.
+/// What a camera sees of one model in one picture.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// From model to eye: the eye at the origin, looking along -z, y up.
-    pub eye_from_model: Mat4,
-    /// From eye to Vulkan's clip space: y down, depth 0 to 1.
-    pub clip_from_eye: Mat4,
+    /// From model space to Vulkan's clip space: y down, depth 0 to 1.
+    pub clip_from_model: Mat4,
+    /// The eye in model space.
+    pub eye: Vec3,
 }
 
 impl FromStr for Camera {
@@ -50,60 +53,94 @@ impl FromStr for Camera {
 }
 
 impl Camera {
-    /// Looks at `points` from a distance at which they span twice [`HALF_VIEW`], and crops to what they cover of a picture whose width is
-    /// `aspect` times its height.
+    /// The view in which the projected box of `points` stands in the middle and fills [`FILL`] of the tighter side of a picture whose width
+    /// is `aspect` times its height. Zoom enlarges that and leaves the eye where it is, outside of a sphere around all points: no point is
+    /// ever clipped by its depth.
+    ///
+    /// Everything is measured in radii of that sphere, so that a model of any size gets the same picture. Points that are none, by an
+    /// infinite or undefined coordinate, do not count.
     pub fn frame(&self, points: &[Vec3], aspect: f32) -> View {
-        let first = points.first().copied().unwrap_or(Vec3::ZERO);
-        let low = points.iter().fold(first, |low, &point| low.min(point));
-        let high = points.iter().fold(first, |high, &point| high.max(point));
+        let finite = || points.iter().filter(|point| point.is_finite());
+        let points = || finite().map(|point| point.as_dvec3());
+        let (low, high) = bounds(points());
         let centre = 0.5 * (low + high);
-        // A single point still needs near < far.
-        let radius = points
-            .iter()
-            .map(|point| point.distance(centre))
-            .fold(1e-6, f32::max);
-        let distance = radius / HALF_VIEW.sin();
-        let eye_from_model = Mat4::from_translation(Vec3::new(0.0, 0.0, -distance))
-            * Mat4::from_rotation_x(self.pitch.to_radians())
-            * Mat4::from_rotation_y(-self.yaw.to_radians())
-            * Mat4::from_translation(-centre);
-        let (near, far) = ((distance - radius) * 0.9, (distance + radius) * 1.1);
-        let whole = vulkan::perspective(2.0 * HALF_VIEW, aspect, near, far);
-        View {
-            eye_from_model,
-            clip_from_eye: self.crop(points, whole * eye_from_model) * whole,
-        }
-    }
-
-    /// From the clip space of the whole view to that of the part that the points cover, with a margin. Zoom only enlarges that part and
-    /// leaves the eye where it is, outside of the model: nothing is ever clipped.
-    fn crop(&self, points: &[Vec3], clip_from_model: Mat4) -> Mat4 {
-        let seen = points
-            .iter()
-            .map(|&point| clip_from_model.project_point3(point).truncate());
-        let (low, high) = seen.fold((Vec2::MAX, Vec2::MIN), |(low, high), point| {
-            (low.min(point), high.max(point))
+        let radius = points().map(|point| point.distance(centre));
+        let radius = match radius.fold(0.0, f64::max) {
+            // A single point looks the same from everywhere.
+            0.0 => 1.0,
+            radius => radius,
+        };
+        let distance = 1.0 / HALF_VIEW.sin();
+        let turn = DMat3::from_rotation_x(f64::from(self.pitch).to_radians())
+            * DMat3::from_rotation_y(-f64::from(self.yaw).to_radians());
+        let away = distance * DVec3::Z;
+        let seen = points().map(|point| {
+            let at = turn * ((point - centre) / radius) - away;
+            (at.truncate() / -at.z).extend(-at.z)
         });
-        if low.cmpgt(high).any() {
-            return Mat4::IDENTITY;
+        let lens = Lens::around(bounds(seen), f64::from(aspect), f64::from(self.zoom));
+        let rows = lens.rows().map(|row| {
+            let axis = turn.transpose() * row.truncate() / radius;
+            axis.extend(row.w - row.z * distance - axis.dot(centre))
+        });
+        View {
+            clip_from_model: Mat4::from_cols_array_2d(&rows.map(|row| row.as_vec4().to_array()))
+                .transpose(),
+            eye: (centre + turn.transpose() * away * radius).as_vec3(),
         }
-        let scale = self.zoom * MARGIN * 2.0 / (high - low).max_element().max(1e-6);
-        let middle = 0.5 * (low + high);
-        Mat4::from_scale(Vec3::new(scale, scale, 1.0))
-            * Mat4::from_translation((-middle).extend(0.0))
     }
 }
 
-impl View {
-    /// From model to clip space.
-    pub fn clip_from_model(&self) -> Mat4 {
-        self.clip_from_eye * self.eye_from_model
+/// What is seen of the space before an eye that looks along -z, y up.
+struct Lens {
+    /// From slopes, x and y over depth, to the picture's -1..1.
+    scale: DVec2,
+    /// The slopes in the middle of the picture.
+    middle: DVec2,
+    /// The least depth.
+    near: f64,
+    /// The greatest.
+    far: f64,
+}
+
+impl Lens {
+    /// What shows a box of slopes and depths.
+    fn around((low, high): (DVec3, DVec3), aspect: f64, zoom: f64) -> Lens {
+        let size = (high - low).truncate();
+        let fitting = (2.0 * FILL * DVec2::new(aspect, 1.0) / size).min_element();
+        // What has no extent at all fills no picture.
+        let scale = if fitting.is_finite() {
+            fitting
+        } else {
+            1.0 / HALF_VIEW.tan()
+        };
+        Lens {
+            scale: zoom * scale / DVec2::new(aspect, 1.0),
+            middle: 0.5 * (low + high).truncate(),
+            near: low.z - ROOM,
+            far: high.z + ROOM,
+        }
     }
 
-    /// The eye in model space.
-    pub fn eye(&self) -> Vec3 {
-        self.eye_from_model.inverse().transform_point3(Vec3::ZERO)
+    /// The rows of the matrix that leads from there to clip space.
+    fn rows(&self) -> [DVec4; 4] {
+        let depth = self.far / (self.far - self.near);
+        [
+            self.scale.x * DVec4::new(1.0, 0.0, self.middle.x, 0.0),
+            // Vulkan's y points down.
+            -self.scale.y * DVec4::new(0.0, 1.0, self.middle.y, 0.0),
+            -depth * DVec4::new(0.0, 0.0, 1.0, self.near),
+            -DVec4::Z,
+        ]
     }
+}
+
+/// The least and the greatest of each coordinate; zeros where there is no point.
+fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points
+        .map(|point| (point, point))
+        .reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
+        .unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -129,35 +166,85 @@ mod tests {
     }
 
     fn project(camera: &Camera, aspect: f32, point: Vec3) -> Vec3 {
-        camera
-            .frame(&corners(), aspect)
-            .clip_from_model()
-            .project_point3(point)
+        let view = camera.frame(&corners(), aspect);
+        view.clip_from_model.project_point3(point)
+    }
+
+    /// The corners of a box, and what else makes framing hard: a plane, a pole, a crowd far from the origin.
+    fn shapes() -> Vec<Vec<Vec3>> {
+        let shaped = |by: Vec3, to: Vec3| corners().iter().map(|&p| p * by + to).collect();
+        vec![
+            corners(),
+            shaped(Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO),
+            shaped(Vec3::new(0.01, 7.0, 0.01), Vec3::ZERO),
+            shaped(Vec3::ONE, Vec3::new(-3e3, 2e3, 1e3)),
+        ]
+    }
+
+    fn cameras() -> impl Iterator<Item = Camera> {
+        let yaws = (-180..180).step_by(30);
+        yaws.flat_map(|yaw| {
+            [-90, -77, -45, 0, 22, 80, 90].map(|pitch| camera(&format!("{yaw},{pitch},1")))
+        })
     }
 
     #[test]
-    fn every_corner_is_in_the_picture_from_everywhere_and_fills_it() {
-        for yaw in (-180..180).step_by(30) {
-            for pitch in [-90, -45, 0, 45, 90] {
-                for aspect in [0.3, 1.0, 2.5] {
-                    let camera = camera(&format!("{yaw},{pitch},1"));
-                    let seen: Vec<Vec3> = corners()
-                        .into_iter()
-                        .map(|p| project(&camera, aspect, p))
-                        .collect();
-                    assert!(
-                        seen.iter().all(|p| p.truncate().abs().max_element() <= 0.9),
-                        "{seen:?}"
-                    );
-                    assert!(seen.iter().all(|p| (0.0..=1.0).contains(&p.z)), "{seen:?}");
-                    let reach = seen
-                        .iter()
-                        .map(|p| p.truncate().abs().max_element())
-                        .fold(0.0, f32::max);
-                    assert!(reach > 0.85, "{reach}");
-                }
+    fn the_projected_box_stands_in_the_middle_and_fills_the_tighter_side() {
+        for (points, camera) in shapes()
+            .into_iter()
+            .flat_map(|points| cameras().map(move |camera| (points.clone(), camera)))
+        {
+            for aspect in [0.3, 1.0, 2.5] {
+                let view = camera.frame(&points, aspect);
+                let seen = points
+                    .iter()
+                    .map(|&p| view.clip_from_model.project_point3(p).as_dvec3());
+                let (low, high) = bounds(seen);
+                let place = format!("{camera:?} {aspect} {low} {high}");
+                assert!(low.z > 0.0 && high.z < 1.0, "{place}");
+                let middle = 0.5 * (low + high).truncate();
+                assert!(middle.abs().max_element() < 2e-3, "{place}");
+                let tighter = 0.5 * (high - low).truncate().max_element();
+                assert!((tighter - FILL).abs() < 2e-3, "{place}");
             }
         }
+    }
+
+    #[test]
+    fn models_of_any_size_have_the_same_picture() {
+        for camera in cameras() {
+            let view = camera.frame(&corners(), 1.6);
+            let seen = corners()
+                .into_iter()
+                .map(|p| view.clip_from_model.project_point3(p));
+            let seen: Vec<Vec3> = seen.collect();
+            for scale in [1e-30f32, 1e-6, 1e6, 1e30].map(|scale| scale.log2().round().exp2()) {
+                let scaled: Vec<Vec3> = corners().into_iter().map(|p| p * scale).collect();
+                let view = camera.frame(&scaled, 1.6);
+                let again = scaled
+                    .iter()
+                    .map(|&p| view.clip_from_model.project_point3(p));
+                assert_eq!(again.collect::<Vec<Vec3>>(), seen, "{camera:?} {scale}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_extent_or_is_no_point_has_a_view_all_the_same() {
+        for points in [
+            vec![],
+            vec![Vec3::ONE],
+            vec![Vec3::X, 2.0 * Vec3::X],
+            vec![Vec3::NAN],
+        ] {
+            let view = camera("90,0,1").frame(&points, 1.0);
+            assert!(view.clip_from_model.is_finite() && view.eye.is_finite());
+        }
+        let mut points = corners();
+        points.push(Vec3::new(0.0, f32::INFINITY, 0.0));
+        let view = camera("30,20,1").frame(&points, 1.0);
+        let right = camera("30,20,1").frame(&corners(), 1.0);
+        assert_eq!(view.clip_from_model, right.clip_from_model);
     }
 
     #[test]
@@ -176,12 +263,31 @@ mod tests {
     }
 
     #[test]
-    fn zoom_magnifies() {
-        let width = |camera: &str| {
-            let camera = self::camera(camera);
-            (project(&camera, 1.0, CENTRE + Vec3::X) - project(&camera, 1.0, CENTRE)).x
-        };
-        assert!((width("0,0,3") / width("0,0,1") - 3.0).abs() < 1e-4);
+    fn the_eye_projects_to_nowhere() {
+        for camera in cameras() {
+            let view = camera.frame(&corners(), 1.0);
+            let clip = view.clip_from_model * view.eye.extend(1.0);
+            assert!(clip.truncate().truncate().abs().max_element() < 1e-5);
+            assert!(clip.w.abs() < 1e-5 && clip.z < 0.0, "{clip}");
+        }
+    }
+
+    #[test]
+    fn zoom_magnifies_about_the_middle_and_clips_no_depth() {
+        for camera in cameras() {
+            let near = camera.frame(&corners(), 1.0).clip_from_model;
+            let zoomed = Camera {
+                zoom: 3.0,
+                ..camera
+            };
+            let far = zoomed.frame(&corners(), 1.0).clip_from_model;
+            for point in corners() {
+                let (once, thrice) = (near.project_point3(point), far.project_point3(point));
+                let moved = 3.0 * once.truncate() - thrice.truncate();
+                assert!(moved.abs().max_element() < 1e-4);
+                assert_eq!(once.z, thrice.z);
+            }
+        }
     }
 
     #[test]

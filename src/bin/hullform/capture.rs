@@ -2,14 +2,15 @@
 
 use crate::camera::Camera;
 use crate::drawing::Drawing;
+use crate::framing::Subject;
 use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
-use hullform::gpu::{Batch, Fill, Pipelines, SurfaceOptions};
+use hullform::gpu::{Batch, Fill, Pipelines, SurfaceOptions, View};
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::to_ptex;
+use hullform::method::{Displacement, to_ptex};
 use hullform::{Error, Result, abi};
 
 /// Vertices that are captured at once: as many as 64 MiB hold.
@@ -37,15 +38,26 @@ pub fn capture(
         greatest_level: cut.level,
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, model, chosen, options)?;
+    let prepared = Drawing::prepare(model, chosen)?;
+    let camera = camera.filter(|_| cutting.adaptive.is_some());
+    let seen = camera.map(|camera| {
+        let subject = Subject {
+            gpu,
+            model,
+            prepared: &prepared,
+            cutting,
+            displacement: Displacement::default(),
+            ring_bytes: global.ring_bytes,
+            points: global.points,
+        };
+        subject.framed(camera, SEEN)
+    });
+    let tags = seen.transpose()?.and_then(|(_, tags)| tags);
+    let mut drawing = Drawing::of(gpu, model, prepared, options)?;
     drawing.upload(global.points)?;
     // Nothing is rasterised, but draws need a render pass.
     let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
     let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;
-    let tags = camera.and_then(|camera| {
-        let view = drawing.framed(model, camera, SEEN[0] / SEEN[1]);
-        drawing.tags(model, cutting, &view, SEEN)
-    });
     let list = drawing.draw_list(cut, tags.as_ref())?;
     let mut surface = Surface::default();
     for batch in list.batches() {
@@ -55,20 +67,20 @@ pub fn capture(
     Ok(surface)
 }
 
-/// Draws a batch and returns what was captured, patch by patch.
-fn capture_batch(
+/// Draws a batch of which every vertex is recorded.
+pub fn record(
     gpu: &Gpu,
     drawing: &Drawing<'_>,
     target: &OffscreenTarget,
     pipelines: &Pipelines,
+    view: &View,
     batch: Batch<'_>,
-) -> Result<Vec<abi::Captured>> {
-    let view = Drawing::nowhere();
+) -> Result<()> {
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         drawing.surface().cmd_prepare(gpu.device.raw(), cmd);
         target.begin(cmd, [0.0; 4]);
-        let drawn = drawing.cmd_draw(cmd, pipelines, &view, [batch]);
+        let drawn = drawing.cmd_draw(cmd, pipelines, view, [batch]);
         target.end(cmd);
         drawing.surface().cmd_read_back(gpu.device.raw(), cmd);
         drawn
@@ -79,10 +91,21 @@ fn capture_batch(
             "{overflows} patches found no room in the scratch ring; use --slots host, or a larger --ring-bytes"
         )));
     }
+    drawing.surface().arrival([batch])?.check()
+}
+
+/// Draws a batch and returns what was captured, patch by patch.
+fn capture_batch(
+    gpu: &Gpu,
+    drawing: &Drawing<'_>,
+    target: &OffscreenTarget,
+    pipelines: &Pipelines,
+    batch: Batch<'_>,
+) -> Result<Vec<abi::Captured>> {
+    record(gpu, drawing, target, pipelines, &Drawing::nowhere(), batch)?;
     let surface = drawing.surface();
-    let arrival = surface.arrival([batch])?;
-    arrival.check()?;
-    Ok(once_each(surface.captured()?, arrival.vertices))
+    let expected = surface.arrival([batch])?.vertices;
+    Ok(once_each(surface.captured()?, expected))
 }
 
 /// The captured vertices by patch, v and u, each once: the evaluating shader may run more than once a vertex.

@@ -4,20 +4,19 @@ use std::ops::Deref;
 use std::time::Instant;
 
 use ash::vk;
-use glam::{Vec2, Vec3};
 use hullform::gpu::{
     Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, PointPipeline, Slots,
     SurfaceOptions, Target, TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Displacement};
-use hullform::tessellation::{Domain, Spacing};
+use hullform::method::{DepthTags, Displacement, Prepared};
+use hullform::tessellation::Spacing;
 use hullform::{Error, Result, abi};
 
 use crate::adaptive::Seen;
 use crate::approximation;
-use crate::camera::{self, Camera};
+use crate::camera;
 use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Points};
 
@@ -40,6 +39,30 @@ impl<'a> Drawing<'a> {
         chosen: Chosen,
         options: SurfaceOptions,
     ) -> Result<Drawing<'a>> {
+        let started = Instant::now();
+        let prepared = Drawing::prepare(model, chosen)?;
+        let plan_seconds = started.elapsed().as_secs_f64();
+        let mut drawing = Drawing::of(gpu, model, prepared, options)?;
+        drawing.plan_seconds = plan_seconds;
+        Ok(drawing)
+    }
+
+    /// Prepares a model by a method, and says when that only approximates what nobody asked to be approximated.
+    pub fn prepare(model: &Model, chosen: Chosen) -> Result<Prepared> {
+        let prepared = chosen.prepare(model)?;
+        if chosen.by_default {
+            approximation::tell(model, chosen.method, &prepared);
+        }
+        Ok(prepared)
+    }
+
+    /// Brings a model that has been prepared to the device.
+    pub fn of(
+        gpu: &'a Gpu,
+        model: &Model,
+        prepared: Prepared,
+        options: SurfaceOptions,
+    ) -> Result<Drawing<'a>> {
         if options.backend == Backend::Geometry
             && !gpu.device.info().support.optional.geometry_shader
         {
@@ -49,18 +72,12 @@ impl<'a> Drawing<'a> {
                 remedy: "choose another device, or the backend pattern or tessellator".into(),
             });
         }
-        let started = Instant::now();
-        let prepared = chosen.prepare(model)?;
-        let planned = Instant::now();
-        if chosen.by_default {
-            approximation::tell(model, chosen.method, &prepared);
-        }
         let device = gpu.device.raw();
         let mut drawing = Drawing {
             gpu,
             layout: None,
             surface: None,
-            plan_seconds: (planned - started).as_secs_f64(),
+            plan_seconds: 0.0,
             upload_seconds: 0.0,
         };
         // SAFETY: the device is live and was opened with every feature that `Support` asks for.
@@ -125,25 +142,6 @@ impl<'a> Drawing<'a> {
         self.surface.as_mut().expect("there from new to drop")
     }
 
-    /// What a camera sees that frames the surface itself, in a picture of some aspect: the control mesh may reach far beyond it.
-    pub fn framed(&self, model: &Model, camera: Camera, aspect: f32) -> camera::View {
-        let prepared = self.surface().prepared();
-        let controls = prepared.controls(model.positions());
-        let samples = |domain| match domain {
-            Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
-            Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.3, 0.3]],
-        };
-        let points = prepared.passes.iter().flat_map(|pass| {
-            let controls = &controls;
-            let patches = 0..pass.patches.len();
-            patches.flat_map(move |patch| {
-                samples(pass.domain)
-                    .map(|uv| pass.evaluate(controls, patch, Vec2::from(uv)).position)
-            })
-        });
-        camera.frame(&points.collect::<Vec<Vec3>>(), aspect)
-    }
-
     /// The depth tags that a cutting asks for, as seen in a picture of `size` pixels.
     pub fn tags(
         &self,
@@ -153,8 +151,8 @@ impl<'a> Drawing<'a> {
         size: [f32; 2],
     ) -> Option<DepthTags> {
         let seen = Seen {
-            clip_from_model: view.clip_from_model(),
-            eye: view.eye(),
+            clip_from_model: view.clip_from_model,
+            eye: view.eye,
             scale: model.placement().scale,
             size,
         };

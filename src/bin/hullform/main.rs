@@ -7,6 +7,7 @@ mod capture;
 mod compare;
 mod devices;
 mod drawing;
+mod framing;
 mod gpu;
 mod interrupt;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::camera::{Camera, View};
 use crate::drawing::{Drawing, OwnPipelines};
+use crate::framing::Subject;
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, picture, png, wrote};
@@ -10,7 +11,7 @@ use clap::{Args, ValueEnum};
 use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::Displacement;
+use hullform::method::{DepthTags, Displacement, Prepared};
 use hullform::{Error, Result, abi};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -83,6 +84,9 @@ struct Scene<'a> {
     points: options::Points,
     load_seconds: f64,
 }
+
+/// What is seen of a scene, and the depth tags that follow from that.
+type Seen = (View, Option<DepthTags>);
 
 /// Where a scene is seen from.
 enum Sight {
@@ -207,19 +211,49 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
 
 /// Draws `scene` into `target`, copies the picture to the host, and returns the statistics.
 fn draw(gpu: &Gpu, target: &OffscreenTarget, scene: &Scene<'_>) -> Result<Value> {
-    let stats = draw_with(gpu, target, scene, scene.slots)?;
+    let started = Instant::now();
+    let prepared = Drawing::prepare(scene.model, scene.chosen)?;
+    let plan_seconds = started.elapsed().as_secs_f64();
+    let seen = scene.seen(gpu, &prepared)?;
+    let draw =
+        |prepared, slots| draw_with(gpu, target, scene, prepared, plan_seconds, &seen, slots);
+    let stats = draw(prepared, scene.slots)?;
     if stats["ring"]["overflows"] == 0 {
         return Ok(stats);
     }
     // Control shaders ran more often than once a patch and took more than their share. Slots from the host do not depend on that.
     tracing::warn!("the scratch ring overflowed; drawing again with slots from the host");
-    draw_with(gpu, target, scene, Slots::Host)
+    draw(Drawing::prepare(scene.model, scene.chosen)?, Slots::Host)
+}
+
+impl Scene<'_> {
+    /// What is seen of it, and the depth tags that the cutting asks for.
+    fn seen(&self, gpu: &Gpu, prepared: &Prepared) -> Result<Seen> {
+        match self.sight {
+            Sight::Given(view) => Ok((view, None)),
+            Sight::Framed(camera, Size { width, height }) => {
+                let subject = Subject {
+                    gpu,
+                    model: self.model,
+                    prepared,
+                    cutting: self.cutting,
+                    displacement: self.displacement,
+                    ring_bytes: self.ring_bytes,
+                    points: self.points,
+                };
+                subject.framed(camera, [width as f32, height as f32])
+            }
+        }
+    }
 }
 
 fn draw_with(
     gpu: &Gpu,
     target: &OffscreenTarget,
     scene: &Scene<'_>,
+    prepared: Prepared,
+    plan_seconds: f64,
+    (view, tags): &Seen,
     slots: Slots,
 ) -> Result<Value> {
     let Cutting { cut, backend, .. } = scene.cutting;
@@ -232,24 +266,16 @@ fn draw_with(
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
-    let mut drawing = Drawing::new(gpu, scene.model, scene.chosen, options)?;
+    let mut drawing = Drawing::of(gpu, scene.model, prepared, options)?;
+    drawing.plan_seconds = plan_seconds;
     drawing.upload(scene.points)?;
-    let (view, tags) = match scene.sight {
-        Sight::Framed(camera, Size { width, height }) => {
-            let size = [width as f32, height as f32];
-            let view = drawing.framed(scene.model, camera, size[0] / size[1]);
-            let tags = drawing.tags(scene.model, scene.cutting, &view, size);
-            (view, tags)
-        }
-        Sight::Given(view) => (view, None),
-    };
     let list = drawing.draw_list(cut, tags.as_ref())?;
     let started = Instant::now();
     let mut pipelines = vec![drawing.pipelines(target, cut.spacing, Fill::Solid)?];
     if scene.wireframe {
         pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
     }
-    let counted = draw_frame(gpu, target, scene, &view, &drawing, &pipelines, &list)?;
+    let counted = draw_frame(gpu, target, scene, view, &drawing, &pipelines, &list)?;
     let seconds = started.elapsed().as_secs_f64();
     // Patches without room in the ring are known to be missing: see `draw`.
     if drawing.counters()?.overflows == 0 {
@@ -364,8 +390,8 @@ fn statistics(
 /// The view as the library takes it.
 fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
     gpu::View {
-        clip_from_model: view.clip_from_model().to_cols_array_2d(),
-        eye: view.eye().to_array(),
+        clip_from_model: view.clip_from_model.to_cols_array_2d(),
+        eye: view.eye.to_array(),
         shading: scene.shading.code(),
         displacement: scene.displacement,
     }

@@ -1,0 +1,133 @@
+//! What a camera has to frame: the surface as the device will draw it, wherever its patches bend and bumps lead it.
+
+use glam::Vec3;
+use hullform::gpu::{Cut, Fill, Pipelines, Slots, SurfaceOptions, View};
+use hullform::host::OffscreenTarget;
+use hullform::mesh::Model;
+use hullform::method::{DepthTags, Displacement, Prepared};
+use hullform::{Result, abi};
+
+use crate::camera::{self, Camera};
+use crate::capture::record;
+use crate::drawing::Drawing;
+use crate::gpu::Gpu;
+use crate::options::{Cutting, Points};
+
+/// Vertices that are recorded at once: as many as 16 MiB hold.
+const RECORDED: u32 = (16 << 20) / size_of::<abi::Captured>() as u32;
+
+/// Above this many vertices a surface is framed at half its level, and so on.
+const MANY: u64 = 1 << 17;
+
+/// The same for a displaced one, whose bumps hide between vertices.
+const MANY_DISPLACED: u64 = 1 << 21;
+
+/// The level down to which that may go. Between points an n-th of a patch apart the surface goes beyond them by at most 1 / 8n^2 of its second
+/// derivative, which is of the order of the patch: with 4 segments less than a fiftieth of it, where the frame leaves a twentieth of the
+/// picture free.
+const ENOUGH: f32 = 4.0;
+
+/// What is framed.
+pub struct Subject<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// The model.
+    pub model: &'a Model,
+    /// What a method made of it.
+    pub prepared: &'a Prepared,
+    /// How it will be cut up.
+    pub cutting: Cutting,
+    /// How it will be displaced.
+    pub displacement: Displacement,
+    /// Bytes of the scratch ring.
+    pub ring_bytes: u64,
+    /// Who computes points.
+    pub points: Points,
+}
+
+impl Subject<'_> {
+    /// What `camera` sees in a picture of `size` pixels, and the depth tags that the cutting asks for there.
+    ///
+    /// The vertices come from the device, undrawn, by the very shaders that will draw them: so displacement, spacing and back-end are what
+    /// they will be.
+    pub fn framed(
+        &self,
+        camera: Camera,
+        size: [f32; 2],
+    ) -> Result<(camera::View, Option<DepthTags>)> {
+        let Cutting { cut, backend, .. } = self.cutting;
+        let options = SurfaceOptions {
+            backend,
+            ring_bytes: self.ring_bytes,
+            // These hold whatever runs how often.
+            slots: Slots::Host,
+            capture_vertices: RECORDED,
+            greatest_level: cut.level,
+            ..Default::default()
+        };
+        let mut drawing = Drawing::of(self.gpu, self.model, self.prepared.clone(), options)?;
+        drawing.upload(self.points)?;
+        // Nothing is rasterised, but draws need a render pass.
+        let target = OffscreenTarget::new(&self.gpu.device, 1, 1, 1)?;
+        let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;
+        self.look(&mut drawing, &target, &pipelines, camera, size)
+    }
+
+    fn look(
+        &self,
+        drawing: &mut Drawing<'_>,
+        target: &OffscreenTarget,
+        pipelines: &Pipelines,
+        camera: Camera,
+        size: [f32; 2],
+    ) -> Result<(camera::View, Option<DepthTags>)> {
+        let mut frame = |cut: Cut, tags: Option<&DepthTags>| {
+            let mut positions = Vec::new();
+            for batch in drawing.draw_list(cut, tags)?.batches() {
+                record(self.gpu, drawing, target, pipelines, &self.view(), batch)?;
+                let captured = drawing.surface().captured()?.iter();
+                positions.extend(captured.map(|vertex| Vec3::from(vertex.position)));
+            }
+            let view = camera.frame(&positions, size[0] / size[1]);
+            Ok((view, drawing.tags(self.model, self.cutting, &view, size)))
+        };
+        let (view, tags) = frame(self.coarse(), None)?;
+        if tags.is_none() || self.displacement.height == 0.0 {
+            return Ok((view, tags));
+        }
+        // With fewer vertices fewer bumps are met.
+        let (view, _) = frame(self.cutting.cut, tags.as_ref())?;
+        Ok((view, tags))
+    }
+
+    fn view(&self) -> View {
+        View {
+            displacement: self.displacement,
+            ..Drawing::nowhere()
+        }
+    }
+
+    /// The cut that is enough to know where the surface goes.
+    fn coarse(&self) -> Cut {
+        let many = if self.displacement.height == 0.0 {
+            MANY
+        } else {
+            MANY_DISPLACED
+        };
+        let mut cut = self.cutting.cut;
+        while cut.level > ENOUGH && self.vertices(cut) > many {
+            cut.level = (0.5 * cut.level).max(ENOUGH);
+        }
+        cut
+    }
+
+    fn vertices(&self, cut: Cut) -> u64 {
+        let cut = self.cutting.backend.cut(cut);
+        let passes = self.prepared.passes.iter();
+        passes
+            .flat_map(|pass| {
+                (0..pass.patches.len()).map(move |patch| u64::from(cut.vertices(pass, patch)))
+            })
+            .sum()
+    }
+}

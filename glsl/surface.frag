@@ -8,8 +8,9 @@
 #include "method"
 #include "lib/shading.glsl"
 
-// Centroid: at silhouettes a pixel's middle lies outside of the triangle, and extrapolated normals would glitter.
-layout(location = 0) centroid in vec3 in_position;
+// Centroid: at silhouettes a pixel's middle lies outside of the triangle, and extrapolated normals would glitter. A position may: it is where
+// the pixel's own line of sight meets the triangle's plane, and differences from pixel to pixel lie in that plane.
+layout(location = 0) in vec3 in_position;
 layout(location = 1) centroid in vec3 in_normal;
 layout(location = 2) centroid in vec2 in_uv;
 layout(location = 3) centroid in vec2 in_texture;
@@ -36,24 +37,41 @@ vec3 valence_colour(Patch record) {
     return mix(vec3(0.72), extreme, amount * strength);
 }
 
-// The normal of the side that is seen. That goes by the triangle: at a silhouette one that is seen from its front still has normals that
-// point away from the eye. Where the surface has no normal, or opposite ones meet, the triangle's own will do.
-vec3 seen_normal(vec3 to_eye) {
-    vec3 across = normalize_or_zero(dFdx(in_position));
-    vec3 down = normalize_or_zero(dFdy(in_position));
+// The direction in which the pixel is seen. Of a triangle that is seen from its edge the line of sight may meet the plane behind the eye, or
+// nowhere.
+vec3 towards_eye(Axes view) {
+    vec3 to_eye = normalize_or_zero(frame.eye - in_position);
+    float along = dot(to_eye, view.back);
+    return along > 0.0 ? to_eye : along < 0.0 ? -to_eye : view.back;
+}
+
+// The normal of the side that is seen. gl_FrontFacing tells the side, not the normal itself: at a silhouette that points away from the eye on
+// triangles that are seen from their front. Only where the surface folds over within a flat side triangles are turned over, or the normals at
+// their corners are; both shall look like the side around them, and there the triangle's plane and what the eye sees agree against the facing.
+// Each of the two alone is lost in rounding somewhere: the plane on slivers, the eye's view at silhouettes. Where the surface has no normal, or
+// opposite ones meet, the plane's will do.
+vec3 normal_of_side(vec3 to_eye) {
+    vec3 plane = normalize_or_zero(cross(normalize_or_zero(dFdx(in_position)), normalize_or_zero(dFdy(in_position))));
+    if (dot(plane, to_eye) < 0.0) plane = -plane;
     vec3 normal = normalize_or_zero(in_normal);
-    if (normal != vec3(0.0)) return gl_FrontFacing ? normal : -normal;
-    vec3 plane = normalize_or_zero(cross(across, down));
-    if (plane == vec3(0.0)) return to_eye;
-    return dot(plane, to_eye) < 0.0 ? -plane : plane;
+    if (normal == vec3(0.0)) return plane == vec3(0.0) ? to_eye : plane;
+    if (!gl_FrontFacing) normal = -normal;
+    return dot(normal, plane) < 0.0 && dot(normal, to_eye) < -0.1 ? -normal : normal;
+}
+
+// Of a smooth surface nothing is seen whose normal points away: triangles that stand for it at a silhouette are lit as it is on this side of its
+// horizon.
+vec3 seen_normal(vec3 to_eye) {
+    vec3 normal = normal_of_side(to_eye);
+    return normal - 2.0 * min(dot(normal, to_eye), 0.0) * to_eye;
 }
 
 void main() {
     Patch record = patch_record(in_patch);
     vec2 pixel = fwidth(in_uv);
-    vec3 to_eye = normalize_or_zero(frame.eye - in_position);
+    Axes view = view_axes(frame.view_projection, frame.eye);
+    vec3 to_eye = towards_eye(view);
     vec3 normal = seen_normal(to_eye);
-    Axes view = view_axes(frame.view_projection, to_eye);
     vec3 colour = vec3(0.56, 0.33, 0.22);
     float gloss = 0.25;
     switch (frame.shading) {

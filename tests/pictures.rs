@@ -41,9 +41,14 @@ fn actual(name: &str) -> PathBuf {
 
 /// Draws a picture, or says why there is none to compare: no device.
 fn render(path: &Path, arguments: &[&str]) -> Option<()> {
+    render_plainly(path, &[arguments, &["--size", SIZE]].concat())
+}
+
+/// The same in the size that the arguments name.
+fn render_plainly(path: &Path, arguments: &[&str]) -> Option<()> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hullform"));
     command.arg("render").args(arguments);
-    command.args(["--size", SIZE, "--output"]).arg(path);
+    command.arg("--output").arg(path);
     let output = command
         .env_remove("RUST_LOG")
         .output()
@@ -86,35 +91,48 @@ fn differences(a: &[[u8; 3]], b: &[[u8; 3]]) -> (f64, f64) {
 }
 
 fn compare(name: &str, arguments: &[&str]) {
-    let (reference, actual) = (reference(name), actual(name));
+    let arguments = [arguments, &["--size", SIZE]].concat();
+    compare_with(&reference(name), name, &arguments);
+}
+
+fn compare_with(reference: &Path, name: &str, arguments: &[&str]) {
+    let actual = actual(name);
     fs::create_dir_all(actual.parent().expect("a folder")).expect("a folder can be made");
-    if render(&actual, arguments).is_none() {
+    if render_plainly(&actual, arguments).is_none() {
         return;
     }
+    let right = reference.display();
     if std::env::var_os("HULLFORM_UPDATE").is_some() {
         fs::create_dir_all(reference.parent().expect("a folder")).expect("a folder can be made");
-        fs::copy(&actual, &reference).expect("the reference can be written");
+        fs::copy(&actual, reference).expect("the reference can be written");
     }
     let shown = actual.display();
     assert!(
         reference.is_file(),
-        "there is no tests/pictures/{name}.png; look at {shown}, and if it is right make it the reference with {UPDATE}"
+        "there is no {right}; look at {shown}, and if it is right make it the reference with {UPDATE}"
     );
-    let (width, height, right) = read(&reference);
+    let (width, height, expected) = read(reference);
     let (w, h, pixels) = read(&actual);
     assert_eq!((w, h), (width, height), "{name}: another size; see {shown}");
-    let (mean, off) = differences(&pixels, &right);
+    let (mean, off) = differences(&pixels, &expected);
     println!(
         "{name}: differences {mean:.3} on average, {:.2} % of pixels off",
         100.0 * off
     );
     assert!(
         mean <= MEAN && off <= SHARE_OFF,
-        "{name}: {mean:.2} on average and {:.1} % of pixels off; compare {shown} with tests/pictures/{name}.png, \
+        "{name}: {mean:.2} on average and {:.1} % of pixels off; compare {shown} with {right}, \
          and if the new one is right make it the reference with {UPDATE}",
         100.0 * off
     );
     fs::remove_file(&actual).expect("it was just made");
+}
+
+/// What somebody sees who tries hullform is what its README shows.
+#[test]
+fn the_first_picture_of_the_readme_is_the_default_one() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    compare_with(&root.join("examples/hull.png"), "hull", &[]);
 }
 
 #[test]
@@ -214,4 +232,222 @@ fn another_picture_is_told_apart() {
     let [(_, _, a), (_, _, b)] = paths.map(|path| read(&path));
     let (mean, off) = differences(&a, &b);
     assert!(mean > MEAN && off > SHARE_OFF, "{mean} {off}");
+}
+
+/// A picture to be looked into.
+struct Picture {
+    width: usize,
+    height: usize,
+    pixels: Vec<[u8; 3]>,
+}
+
+impl Picture {
+    /// None without a device.
+    fn of(model: &str, size: &str, arguments: &[&str]) -> Option<Picture> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("picture.png");
+        render_plainly(&path, &[&[model, "--size", size], arguments].concat())?;
+        let (width, height, pixels) = read(&path);
+        Some(Picture {
+            width: width as usize,
+            height: height as usize,
+            pixels,
+        })
+    }
+
+    fn at(&self, x: usize, y: usize) -> [u8; 3] {
+        self.pixels[y * self.width + x]
+    }
+
+    /// Whether something is drawn in each pixel: it differs from what is there when the model is a speck in the middle.
+    fn drawn(&self, empty: &Picture) -> Vec<bool> {
+        let background = |i: usize| empty.at(0, i / self.width);
+        let differs = |i: usize| (0..3).any(|c| self.pixels[i][c].abs_diff(background(i)[c]) > 2);
+        (0..self.pixels.len()).map(differs).collect()
+    }
+}
+
+/// A model of its own in a file, for as long as it lives.
+fn model(name: &str, obj: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(format!("{name}.obj"));
+    fs::write(&path, obj).expect("a file can be written");
+    let path = path.to_str().expect("a plain path").to_owned();
+    (folder, path)
+}
+
+/// A single quad, which bulges far beyond its corners and middle; the long way round a tent of four sides; both with a vertex far away that
+/// no face uses.
+const BULGES: [&str; 2] = [
+    "v 0 0 0\nv 2 0 1\nv 2 3 0\nv 0 2 1\nv 90 90 90\nf 1 2 3 4\nt interpolateboundary 1/0/0 2\n",
+    "v 0 3 0\nv 90 90 90\nv 1 1 0\nv 1.5 0 0\nv 0 1 1\nv 0 0 1.5\nv -1 1 0\nv -1.5 0 0\nv 0 1 -1\nv 0 0 -1.5\n\
+     f 1 5 3\nf 3 5 6 4\nf 1 7 5\nf 5 7 8 6\nf 1 9 7\nf 7 9 10 8\nf 1 3 9\nf 9 3 4 10\n",
+];
+
+#[test]
+fn what_is_drawn_fills_the_picture_and_is_never_cut() {
+    let files = BULGES.map(|obj| model("bulge", obj));
+    let [quad, tent] = [0, 1].map(|i| files[i].1.as_str());
+    for size in ["160x120", "90x160"] {
+        let Some(empty) = Picture::of("builtin:cube", size, &["--camera", "0,0,0.01"]) else {
+            return;
+        };
+        for (model, arguments) in [
+            (quad, "--camera=40,22,1"),
+            (tent, "--camera=40,22,1"),
+            ("builtin:cube", "--camera=10,80,1"),
+            ("builtin:cube", "--camera=-130,33,1 --level=1"),
+            ("builtin:cube", "--camera=25,-50,1 --displace=0.15"),
+            (tent, "--camera=100,10,1 --displace=-0.3 --level=16"),
+            ("builtin:sheet", "--camera=200,-90,1 --displace=0.2"),
+            ("builtin:pole-5", "--camera=0,5,1 --spacing=fractional-even --level=5"),
+            ("builtin:pole-5", "--camera=70,60,1 --method=pn --backend=pattern --displace=0.2"),
+            ("builtin:cube", "--camera=70,20,1 --displace=0.2 --adaptive=screen:4"),
+        ] {
+            let arguments: Vec<&str> = arguments.split(' ').collect();
+            let picture = Picture::of(model, size, &arguments).expect("there is a device");
+            let (fill, margin) = fill(&picture, &empty);
+            let place = format!("{model} {size} {arguments:?}: {fill}");
+            assert!(margin > 0 && (0.85..=0.95).contains(&fill), "{place}");
+        }
+    }
+}
+
+/// Which share of the tighter side the drawn box has, and the pixels that are free on the narrowest of its sides.
+fn fill(picture: &Picture, empty: &Picture) -> (f64, usize) {
+    let (w, h) = (picture.width, picture.height);
+    let drawn = picture.drawn(empty);
+    let span = |length: usize, has: &dyn Fn(usize) -> bool| {
+        let first = (0..length).find(|&i| has(i)).expect("something is drawn");
+        let last = (0..length).rfind(|&i| has(i)).expect("something is drawn");
+        let share = (last + 1 - first) as f64 / length as f64;
+        (share, first.min(length - 1 - last))
+    };
+    let (x, left) = span(w, &|x| (0..h).any(|y| drawn[y * w + x]));
+    let (y, above) = span(h, &|y| (0..w).any(|x| drawn[y * w + x]));
+    (x.max(y), left.min(above))
+}
+
+/// Behind a hole in the front, that the near plane cuts, one would see the inside of the back, whose normals point away.
+#[test]
+fn no_plane_cuts_what_stands_out() {
+    let arguments = ["--displace", "0.15", "--camera", "0,0,1", "--shading", "normal"];
+    let Some(picture) = Picture::of("builtin:cube", "120x120", &arguments) else {
+        return;
+    };
+    for (x, y) in (35..85).flat_map(|x| (35..85).map(move |y| (x, y))) {
+        let [_, _, z] = picture.at(x, y);
+        assert!(z > 180, "{x}, {y}: {z}");
+    }
+}
+
+/// Where triangles that are seen from the front have normals that point away, the side that is towards the light stays light.
+#[test]
+fn silhouettes_have_no_dashes() {
+    let brightness = |[r, g, b]: [u8; 3]| u32::from(r) + u32::from(g) + u32::from(b);
+    for (model, level) in [("cube", "4"), ("cube", "6"), ("ngons", "2"), ("ngons", "3")] {
+        let model = format!("builtin:{model}");
+        let arguments = ["--level", level, "--camera", "35,30,1"];
+        let Some(picture) = Picture::of(&model, "240x240", &arguments) else {
+            return;
+        };
+        // From the middle to the border at the upper left, the last pixel that is wholly within.
+        let empty = Picture::of(&model, "240x240", &["--camera", "0,0,0.01"]).expect("a device");
+        let drawn = picture.drawn(&empty);
+        for degree in 100..170 {
+            let direction = f64::from(degree).to_radians();
+            let along = |r: usize| {
+                let [x, y] = [direction.cos(), -direction.sin()];
+                [x, y].map(|c| (120.0 + c * r as f64) as usize)
+            };
+            let border = (0..120).rfind(|&r| drawn[along(r)[1] * 240 + along(r)[0]]);
+            let border = border.expect("the middle is drawn");
+            let [inside, rim] = [border - 12, border - 2].map(|r| {
+                let [x, y] = along(r);
+                brightness(picture.at(x, y))
+            });
+            assert!(
+                4 * rim > 3 * inside,
+                "{model} at level {level}, {degree} degrees: {rim} beside {inside}"
+            );
+        }
+    }
+}
+
+/// Whoever cuts patches into triangles, their fronts are the same: light comes from the same side.
+#[test]
+fn back_ends_draw_the_same_picture() {
+    let drawn = ["tessellator", "pattern", "geometry"].map(|backend| {
+        let arguments = ["--method", "pn", "--backend", backend];
+        Picture::of("builtin:hull", "320x240", &arguments)
+    });
+    let [Some(first), others @ ..] = drawn else {
+        return;
+    };
+    for other in others.into_iter().flatten() {
+        let (mean, off) = differences(&first.pixels, &other.pixels);
+        assert!(mean <= MEAN && off <= SHARE_OFF, "{mean} {off}");
+    }
+}
+
+/// Seen from above, the light is that of the view and turns around no point: neighbours are alike all over a round top.
+#[test]
+fn from_above_light_has_no_pinch() {
+    for pitch in ["80", "90", "-90"] {
+        let camera = format!("10,{pitch},1");
+        let arguments = ["--camera", &camera, "--level", "16"];
+        let Some(picture) = Picture::of("builtin:cube", "160x160", &arguments) else {
+            return;
+        };
+        for (x, y) in (40..120).flat_map(|x| (40..120).map(move |y| (x, y))) {
+            for (to_x, to_y) in [(x + 2, y), (x, y + 2)] {
+                let (a, b) = (picture.at(x, y), picture.at(to_x, to_y));
+                let steps = (0..3).map(|channel| a[channel].abs_diff(b[channel]));
+                let step = steps.max().expect("three channels");
+                assert!(step < 10, "{camera}: {step} at {x}, {y}");
+            }
+        }
+    }
+}
+
+/// Of a size there is nothing in a picture: a power of two changes no bit, anything else hardly any.
+#[test]
+fn models_of_any_size_have_the_same_picture() {
+    let tent = |scale: f64| {
+        let scaled = |line: &str| match line.strip_prefix("v ") {
+            None => line.to_owned(),
+            Some(numbers) => {
+                let numbers = numbers.split(' ').map(|n| n.parse::<f64>().expect("a number"));
+                let numbers = numbers.map(|number| format!("{:e}", number * scale));
+                format!("v {}", numbers.collect::<Vec<String>>().join(" "))
+            }
+        };
+        let lines: Vec<String> = BULGES[1].lines().map(scaled).collect();
+        let (_folder, path) = model("scaled", &(lines.join("\n") + "\n"));
+        Picture::of(&path, SIZE, &["--displace", "0.02"])
+    };
+    let Some(right) = tent(1.0) else {
+        return;
+    };
+    for (scale, bound) in [(2f64.powi(-40), 0.0), (2f64.powi(30), 0.0), (1e-6, 0.1), (1e12, 0.1)] {
+        let scaled = tent(scale).expect("there is a device");
+        let (mean, _) = differences(&scaled.pixels, &right.pixels);
+        assert!(mean <= bound, "{scale}: {mean}");
+    }
+}
+
+/// Two sides that lie in one another, and a face that is a line: whatever has no normal is lit all the same, and nothing is black.
+#[test]
+fn what_has_no_normal_is_lit() {
+    let (_folder, path) = model(
+        "flat",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0.3\nf 1 2 3 4\nf 4 3 2 1\nf 1 3 5\nf 1 1 5 5\n",
+    );
+    for method in ["quadtree", "flat", "pn"] {
+        let Some(picture) = Picture::of(&path, SIZE, &["--method", method]) else {
+            return;
+        };
+        let dark = picture.pixels.iter().filter(|pixel| pixel.iter().all(|&c| c < 30));
+        assert_eq!(dark.count(), 0, "{method}");
+    }
 }

@@ -13,12 +13,12 @@ struct Axes {
 };
 
 // They are in the matrix to clip space: w, row 3, grows straight away from the eye, and x, row 0, to the right, if the picture's middle is
-// elsewhere with a share of w. Up follows from both, since a viewport may turn y over. An orthographic w does not grow; then all look along
-// the same line, `to_eye`.
-Axes view_axes(mat4 clip_from_model, vec3 to_eye) {
+// elsewhere with a share of w. Up follows from both, since a viewport may turn y over. An orthographic w does not grow; the eye is far away
+// then, and seen from the model's middle in the direction in which it is seen from everywhere.
+Axes view_axes(mat4 clip_from_model, vec3 eye) {
     mat4 rows = transpose(clip_from_model);
     vec3 away = normalize_or_zero(rows[3].xyz);
-    vec3 back = away == vec3(0.0) ? to_eye : -away;
+    vec3 back = away == vec3(0.0) ? normalize_or_zero(eye) : -away;
     vec3 along_x = normalize_or_zero(rows[0].xyz);
     vec3 right = normalize_or_zero(along_x - dot(along_x, back) * back);
     return Axes(right, cross(back, right), back);

@@ -48,7 +48,7 @@ pub fn draw_map(
         let colour = error.map_or(UNKNOWN, |error| {
             scale::colour(scale.share(error)).map(|c| picture::to_linear(c as f32))
         });
-        let [r, g, b] = colour.map(|c| c * light(point, eye - position));
+        let [r, g, b] = colour.map(|c| c * light(point, (eye - position).normalize_or_zero()));
         ColouredVertex {
             clip: (clip_from_model * position.extend(1.0)).to_array(),
             colour: [r, g, b, 1.0],
@@ -73,14 +73,12 @@ pub fn local(model: &Model, point: &Point) -> Vec3 {
     model.placement().local(point.position.into()).as_vec3()
 }
 
-/// The share of a colour that is left, by how much the surface turns away. Without a normal all of it. In f64, since squares of whatever f32
-/// holds are in its range.
+/// The share of a colour that is left, by how much the surface turns away. Without a normal all of it.
 fn light(point: &Point, to_eye: Vec3) -> f32 {
     let normal = Vec3::from(point.normal);
     if normal == Vec3::ZERO {
         return 1.0;
     }
-    let to_eye = to_eye.as_dvec3().normalize_or_zero().as_vec3();
     SIDE + (1.0 - SIDE) * normal.dot(to_eye).abs()
 }
 

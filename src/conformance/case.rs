@@ -151,6 +151,11 @@ impl Check {
         }
     }
 
+    /// Whether nothing was looked at yet.
+    pub fn is_empty(&self) -> bool {
+        self.held + self.broken == 0
+    }
+
     /// The finding: a failure if something did not hold, or if nothing at all was looked at.
     pub fn finish(self, measured: impl fmt::Display) -> Finding {
         match self.first {

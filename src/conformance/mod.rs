@@ -32,6 +32,7 @@ mod runner;
 mod scale;
 mod statistics;
 mod visibility;
+mod witness;
 mod worker;
 
 pub use case::{Case, Check, Finding, LIMIT, Status};

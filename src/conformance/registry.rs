@@ -4,7 +4,7 @@ use glob::Pattern;
 
 use crate::conformance::{
     Case, backends, coordinates, determinism, edges, limit, robustness, scale, statistics,
-    visibility,
+    visibility, witness,
 };
 use crate::error::{Error, Result};
 
@@ -25,6 +25,7 @@ pub struct Group {
 pub const GROUPS: &[Group] = &[
     coordinates::GROUP,
     limit::GROUP,
+    witness::GROUP,
     edges::GROUP,
     backends::GROUP,
     scale::GROUP,

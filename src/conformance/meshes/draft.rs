@@ -1,5 +1,7 @@
 //! Random meshes: a sheet of quads, changed by random strokes and tagged at random.
 
+use glam::DVec2;
+
 use super::{Parts, sheet};
 use crate::conformance::random::Random;
 use crate::error::Result;
@@ -13,6 +15,8 @@ pub struct Draft {
     random: Random,
     /// Whether edges may get more than two faces, or two in the same direction.
     wild: bool,
+    /// By how much new vertices miss the middles that they are meant for.
+    scatter: f64,
 }
 
 impl Draft {
@@ -37,12 +41,40 @@ impl Draft {
             parts: Parts::default(),
             random,
             wild,
+            scatter: 0.15,
         };
         draft.parts = sheet(2 + draft.random.below(3)).scattered(0.2);
         for _ in 0..draft.random.below(7) {
             draft.stroke();
         }
         draft.tagged()
+    }
+
+    /// A random mesh in the plane z = 0, counter-clockwise seen from above, without tags; `even` if vertices stand in rows, so that edges go
+    /// straight on. Faces may have straight corners; everything else about them is far from degenerate.
+    pub fn plane(random: &mut Random, even: bool) -> Parts {
+        loop {
+            let mut draft = Draft {
+                parts: sheet(2 + random.below(3)),
+                random: random.clone(),
+                wild: false,
+                scatter: 0.0,
+            };
+            let by = if even { 0.0 } else { 0.15 };
+            let n = 1 + draft.parts.faces.len().isqrt();
+            for (i, position) in draft.parts.positions.iter_mut().enumerate() {
+                let random = &mut draft.random;
+                let [x, y] = [i % n, i / n].map(|x| x as f64 + random.between(-by, by));
+                *position = [x, y, 0.0];
+            }
+            for _ in 0..draft.random.below(6) {
+                draft.stroke();
+            }
+            *random = draft.random;
+            if is_fair(&draft.parts) {
+                return draft.parts;
+            }
+        }
     }
 
     fn stroke(&mut self) {
@@ -53,7 +85,8 @@ impl Draft {
         match self.random.below(8) {
             0 => self.split(face),
             1 => self.poke(face),
-            2 => self.rays(face),
+            // Vertices at the same place would make faces without area.
+            2 if self.scatter > 0.0 => self.rays(face),
             3 => self.lens(face),
             4 if self.parts.faces.len() > 3 => drop(self.parts.faces.remove(face)),
             5 if self.wild => self.parts.faces[face].reverse(),
@@ -162,7 +195,8 @@ impl Draft {
     }
 
     fn add(&mut self, position: [f64; 3]) -> u32 {
-        let scattered = position.map(|x| x + self.random.between(-0.15, 0.15));
+        let by = self.scatter;
+        let scattered = position.map(|x| x + self.random.between(-by, by));
         self.parts.positions.push(scattered);
         self.parts.positions.len() as u32 - 1
     }
@@ -209,6 +243,21 @@ impl Draft {
             ..SchemeOptions::default()
         }
     }
+}
+
+/// Whether no face of a mesh in the plane z = 0 is narrow or concave: corners are convex, or exactly straight.
+fn is_fair(parts: &Parts) -> bool {
+    let at = |vertex: u32| DVec2::from_slice(&parts.positions[vertex as usize][..2]);
+    parts.faces.iter().all(|face| {
+        let n = face.len();
+        let corner = |i: usize| [i, (i + 1) % n, (i + 2) % n].map(|i| at(face[i]));
+        let turn = |[a, b, c]: [DVec2; 3]| ((b - a).perp_dot(c - b), (b - a).dot(c - b));
+        let turns: Vec<(f64, f64)> = (0..n).map(|i| turn(corner(i))).collect();
+        let convex = |&(turn, _): &(f64, f64)| turn > 0.05;
+        let straight = |&(turn, on): &(f64, f64)| turn.abs() < 1e-12 && on > 0.05;
+        turns.iter().filter(|turn| convex(turn)).count() > 2
+            && turns.iter().all(|turn| convex(turn) || straight(turn))
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Meshes for the suite, made in code: stars of any valence, sheets with creases, and random ones.
 
 mod draft;
+mod planar;
 
 use std::f64::consts::TAU;
 
@@ -13,6 +14,7 @@ use crate::mesh::{
 use crate::method::Method;
 
 pub use draft::Draft;
+pub use planar::{Planar, planar};
 
 /// Positions and faces, to be tagged and built.
 #[derive(Clone, Debug, Default)]

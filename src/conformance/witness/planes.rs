@@ -1,0 +1,140 @@
+//! A plane has its plane's normal, everywhere.
+
+use glam::DVec3;
+
+use super::drawn::{Patch, degrees, diagonal, each_patch, noise_at_corners, normal, position};
+use super::{Looked, Subject, pairs};
+use crate::conformance::meshes::{Planar, planar};
+use crate::conformance::{Case, Check, Context, Finding};
+use crate::error::Result;
+use crate::mesh::{Model, Scheme};
+use crate::method::{Method, MethodOptions, Reproduces};
+use crate::subdivision::LimitSurface;
+use crate::tessellation::triangulate;
+
+const RULE: &str = "a mesh that lies in a plane has its plane's normal at every sample, whatever its tags, turned, scaled and moved: within 5e-4 degrees on the device, 1e-8 in the truth";
+const SOURCE: &str = "affine invariance: weights sum to 1";
+
+/// Cases a method and scheme, and meshes a case.
+const CASES: u32 = 2;
+const MESHES: u32 = 5;
+
+pub(super) fn cases() -> Vec<Case> {
+    let numbered = pairs().flat_map(|pair| (0..CASES).map(move |number| (pair, number)));
+    let case = |((method, scheme), number): ((&'static Method, Scheme), u32)| {
+        let name = format!("witness.plane.{}-{scheme}-{number}", method.name);
+        Case::new(name.clone(), RULE, SOURCE, move |context| {
+            planes(context, method, scheme, &name)
+        })
+    };
+    numbered.map(case).collect()
+}
+
+fn planes(
+    context: &Context,
+    method: &'static Method,
+    scheme: Scheme,
+    stream: &str,
+) -> Result<Finding> {
+    let mut random = context.random(stream);
+    let (mut check, mut looked, mut flat) = (Check::default(), Looked::default(), 0);
+    for number in 0..MESHES {
+        let able = |mesh: &_| {
+            let model = Model::new(Clone::clone(mesh));
+            method.check_model(&model).is_ok()
+        };
+        let plane = planar(&mut random, scheme, able)?;
+        let model = Model::new(plane.mesh.clone());
+        let subject = Subject {
+            prepared: method.prepare(&model, MethodOptions::default())?,
+            model: &model,
+            method,
+        };
+        if subject.prepared.passes.is_empty() {
+            continue;
+        }
+        flat += 1;
+        // The baseline does every scheme: each truth is asked once.
+        if matches!(method.contract.reproduces, Reproduces::Faces(_)) {
+            hold_truth(&mut check, &model, &plane, number);
+        }
+        looked.add(hold_device(context, &mut check, &subject, &plane, number)?);
+    }
+    check.hold(flat > MESHES / 2, || {
+        format!("only {flat} meshes have a surface")
+    });
+    Ok(check.finish(format!(
+        "{flat} planes, {} normals, at most {:.2e} degrees off",
+        looked.count, looked.worst
+    )))
+}
+
+/// The level, which is odd: most vertices lie on no lattice.
+const LEVEL: f32 = 5.0;
+
+fn hold_device(
+    context: &Context,
+    check: &mut Check,
+    subject: &Subject<'_>,
+    plane: &Planar,
+    number: u32,
+) -> Result<Looked> {
+    let mut looked = Looked::default();
+    let scale = diagonal(subject.model);
+    let origin = subject.model.centre() - plane.mesh.positions()[0];
+    each_patch(context, subject, LEVEL, noise_at_corners, |patch| {
+        if is_folded(patch, plane.normal, scale) {
+            // Then there is no side for normals to be on.
+            return Ok(());
+        }
+        for vertex in patch.vertices {
+            let height = (position(vertex) + origin).dot(plane.normal) / scale;
+            let off = degrees(normal(vertex), plane.normal);
+            let missing = vertex.normal == [0.0; 3];
+            check.hold(height.abs() < 1e-6 && off < 5e-4 && !missing, || {
+                let (ptex, uv) = (patch.ptex(), vertex.uv);
+                let given = normal(vertex);
+                format!("plane {number}, {uv:?} of ptex face {ptex}: {height:.1e} above the plane, normal {given:.6} instead of {:.6}", plane.normal)
+            });
+            looked.at(off);
+        }
+        Ok(())
+    })?;
+    Ok(looked)
+}
+
+/// Whether a patch turns over: no face does, but boundaries and creases that are drawn to others' sides may.
+fn is_folded(patch: &Patch<'_>, up: DVec3, scale: f64) -> bool {
+    let uv: Vec<[f32; 2]> = patch.vertices.iter().map(|vertex| vertex.uv).collect();
+    triangulate(patch.pass.domain, &uv)
+        .into_iter()
+        .any(|triangle| {
+            let [a, b, c] = triangle.map(|i| position(&patch.vertices[i as usize]));
+            (b - a).cross(c - a).dot(up) < -1e-9 * scale * scale
+        })
+}
+
+/// The surface in f64, at corners and inside.
+fn hold_truth(check: &mut Check, model: &Model, plane: &Planar, number: u32) {
+    const PLACES: [[f64; 2]; 6] = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [0.0, 1.0],
+        [1.0, 1.0],
+        [0.3, 0.0],
+        [0.25, 0.4],
+    ];
+    let truth = LimitSurface::new(model.mesh());
+    for ptex in 0..truth.ptex_count() {
+        for [u, v] in PLACES {
+            let Some(sample) = truth.evaluate(ptex, u, v) else {
+                continue;
+            };
+            let off = degrees(sample.normal(), plane.normal);
+            check.hold(off < 1e-8 && sample.normal() != DVec3::ZERO, || {
+                let given = sample.normal();
+                format!("plane {number}, the truth at ({u}, {v}) of ptex face {ptex}: {given:.9} instead of {:.9}", plane.normal)
+            });
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Nothing depends on vertices that no face uses, on where a mesh is, or on how large it is.
+
+use glam::DVec3;
+
+use super::drawn::used_box;
+use super::{Looked, Rule, Subject, every, usual};
+use crate::abi::Captured;
+use crate::conformance::capture::{Frame, captured, cut};
+use crate::conformance::meshes::with_positions;
+use crate::conformance::{Check, Context};
+use crate::error::Result;
+use crate::gpu::Fill;
+use crate::mesh::Model;
+use crate::tessellation::Spacing;
+
+pub(super) const UNUSED: Rule = Rule {
+    name: "unused",
+    rule: "a vertex that no face uses changes no bit, wherever it is",
+    source: "README, Coordinates; IEEE 754",
+    concerns: every,
+    options: usual,
+    look: unused,
+};
+
+pub(super) const MOVED: Rule = Rule {
+    name: "moved",
+    rule: "a mesh that is moved, or scaled by a power of two, without rounding, has the same bits but for their exponents",
+    source: "IEEE 754: sums and products of what is scaled by a power of two are so scaled",
+    concerns: every,
+    options: usual,
+    look: moved,
+};
+
+/// Odd: not every vertex lies on a lattice.
+const LEVEL: f32 = 3.0;
+
+/// The mesh made to be compared: as large as 1, each coordinate a multiple of 2^-20, so that it can be moved and scaled without rounding. What no
+/// face uses is in its corner.
+fn exact(model: &Model) -> Vec<DVec3> {
+    let (low, high) = used_box(model);
+    let extent = (high - low).max_element().max(f64::MIN_POSITIVE);
+    let mut used = vec![false; model.mesh().vertex_count()];
+    for &vertex in model.mesh().faces().flatten() {
+        used[vertex as usize] = true;
+    }
+    let places = model.mesh().positions().iter().zip(used);
+    places
+        .map(|(&position, used)| match used {
+            true => ((position - low) / extent * GRID).round() / GRID,
+            false => DVec3::ZERO,
+        })
+        .collect()
+}
+
+const GRID: f64 = (1 << 20) as f64;
+
+/// The subject with other positions.
+struct Other {
+    model: Model,
+    frame: Frame,
+}
+
+fn draw(context: &Context, subject: &Subject<'_>, positions: &[DVec3]) -> Result<Other> {
+    let positions: Vec<[f64; 3]> = positions.iter().map(|p| p.to_array()).collect();
+    let model = Model::new(with_positions(subject.model.mesh(), &positions)?);
+    let prepared = subject.method.prepare(&model, (usual)(subject.method))?;
+    let cut = cut(LEVEL, Spacing::Equal);
+    let mut frame = captured(context, &model, prepared, cut, Fill::Discard)?;
+    if context.is_wrong() {
+        let reach = model.positions().into_iter().map(|p| p.abs().max_element());
+        let reach = reach.fold(0.0, f32::max);
+        let all = frame.passes.iter_mut().flatten();
+        all.for_each(|vertex| lose_places(vertex, reach));
+    }
+    Ok(Other { model, frame })
+}
+
+/// A position as if the middle of the model were a million times as far away.
+fn lose_places(vertex: &mut Captured, reach: f32) {
+    let far = 1e6 * reach;
+    vertex.position = vertex.position.map(|x| (x + far) - far);
+}
+
+/// Holds two frames to the same vertices, with positions `scale` times as large.
+fn hold_same(
+    check: &mut Check,
+    subject: &Subject<'_>,
+    what: &str,
+    frames: [&Frame; 2],
+    scale: f32,
+) -> u64 {
+    let counts = frames.map(|frame| frame.passes.iter().map(Vec::len).collect::<Vec<_>>());
+    let name = subject.method.name;
+    check.hold(counts[0] == counts[1], || {
+        format!(
+            "{name}, {what}: {:?} vertices instead of {:?}",
+            counts[1], counts[0]
+        )
+    });
+    let [first, second] = frames.map(|frame| frame.passes.iter().flatten());
+    let mut count = 0;
+    for (own, other) in first.zip(second) {
+        let wanted = Captured {
+            position: own.position.map(|x| x * scale),
+            ..*own
+        };
+        let same = wanted.position == other.position
+            && wanted.normal == other.normal
+            && wanted.uv == other.uv
+            && wanted.patch_number == other.patch_number;
+        check.hold(same, || {
+            format!("{name}, {what}: {other:?} instead of {wanted:?}")
+        });
+        count += 1;
+    }
+    count
+}
+
+fn unused(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<Looked> {
+    let own = exact(subject.model);
+    let mut looked = Looked::default();
+    // What is spoiled in all frames must differ in one of them.
+    let still = draw(context, subject, &own)?;
+    for far in [DVec3::new(3e6, -2e6, 1e6), DVec3::splat(-7e9)] {
+        let more = [own.as_slice(), &[far]].concat();
+        let other = draw(context, subject, &more)?;
+        let what = format!("with a vertex at {far}");
+        check.hold(other.model.centre() == still.model.centre(), || {
+            format!("{what}: the centre is {}", other.model.centre())
+        });
+        let frames = [&still.frame, &other.frame];
+        looked.count += hold_same(check, subject, &what, frames, 1.0);
+    }
+    Ok(looked)
+}
+
+fn moved(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<Looked> {
+    let own = exact(subject.model);
+    let still = draw(context, subject, &own)?;
+    let mut looked = Looked::default();
+    for offset in [DVec3::new(5.0, -3.0, 7.0), DVec3::new(-1e6, 3e6, 2e6)] {
+        let away: Vec<DVec3> = own.iter().map(|&p| p + offset).collect();
+        let other = draw(context, subject, &away)?;
+        let what = format!("moved by {offset}");
+        check.hold(
+            other.model.centre() == still.model.centre() + offset,
+            || format!("{what}: the centre is {}", other.model.centre()),
+        );
+        let frames = [&still.frame, &other.frame];
+        looked.count += hold_same(check, subject, &what, frames, 1.0);
+    }
+    for exponent in [-60, 60] {
+        let scale = f64::from(exponent).exp2();
+        let scaled: Vec<DVec3> = own.iter().map(|&p| scale * p).collect();
+        let other = draw(context, subject, &scaled)?;
+        let what = format!("2^{exponent} times as large");
+        let frames = [&still.frame, &other.frame];
+        looked.count += hold_same(check, subject, &what, frames, scale as f32);
+    }
+    Ok(looked)
+}

@@ -209,3 +209,43 @@ fn a_model_without_a_surface_is_no_loss() {
         assert_eq!(outcome.files.len(), 1, "{}", outcome.describe());
     }
 }
+
+/// Parts of the suite, one or more of each group. Without draws everything that is compared is missing, and seems to agree.
+const PARTS: [&str; 12] = [
+    "coordinates.quads-equal.*",
+    "coordinates.triangles-fractional_even.*",
+    "limit.valence.boundary-[1-3]",
+    "edges.kind.b*-equal",
+    "edges.picture-displaced.ball-equal",
+    "backends.*.*-pn-loop-cube*",
+    "scale.*.draw-1025_patches-*",
+    "visibility.coherent.*",
+    "determinism.*.ngons-equal",
+    "statistics.*.cube-equal",
+    "robustness.[dei]*",
+    "robustness.corrupted.weights-ngons",
+];
+
+#[test]
+fn no_case_of_the_suite_passes_that_saw_nothing() {
+    if !has_device() {
+        return;
+    }
+    let bench = Bench::new();
+    for part in PARTS {
+        let arguments = ["verify", "--filter", part, "--csv", "OUT/a.csv"];
+        let arguments: &'static [&'static str] = arguments.to_vec().leak();
+        let outcome = bench.run(program(part, arguments), &Fault::Lose(Lost::All));
+        assert_eq!(outcome.code(), Some(1), "{part}: {}", outcome.describe());
+        let [(_, results)] = &outcome.files[..] else {
+            panic!("{part}: {}", outcome.describe());
+        };
+        let results = String::from_utf8_lossy(results);
+        assert!(results.lines().count() > 0, "{part}");
+        for line in results.lines() {
+            let status = line.split(',').nth(1);
+            let saw_nothing = ["Fail", "ExpectedFail", "Skip"].map(Some).contains(&status);
+            assert!(saw_nothing, "{line}: {}", outcome.words());
+        }
+    }
+}

@@ -116,14 +116,18 @@ pub fn faces_of_ptex(model: &Model) -> Vec<u32> {
     parts.collect()
 }
 
-/// The box around the vertices that faces use, counted here and not by the mesh.
-pub fn used_box(model: &Model) -> (DVec3, DVec3) {
-    let positions = model.mesh().positions();
-    let used = model.mesh().faces().flatten();
-    let all = used.map(|&vertex| positions[vertex as usize]);
+/// The box around some vertices, in local units.
+pub fn box_of<'a>(model: &Model, vertices: impl Iterator<Item = &'a u32>) -> (DVec3, DVec3) {
+    let (placement, positions) = (model.placement(), model.mesh().positions());
+    let all = vertices.map(|&vertex| placement.local(positions[vertex as usize]));
     all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
         (low.min(p), high.max(p))
     })
+}
+
+/// The box around the vertices that faces use, counted here and not by the mesh.
+pub fn used_box(model: &Model) -> (DVec3, DVec3) {
+    box_of(model, model.mesh().faces().flatten())
 }
 
 /// Its diagonal.
@@ -132,7 +136,7 @@ pub fn diagonal(model: &Model) -> f64 {
     low.distance(high)
 }
 
-/// A captured position, relative to the model's centre.
+/// A captured position, in local units.
 pub fn position(vertex: &Captured) -> DVec3 {
     Vec3::from(vertex.position).as_dvec3()
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::drawn::{diagonal, each_patch, faces_of_ptex, position, used_box};
+use super::drawn::{box_of, diagonal, each_patch, faces_of_ptex, position, used_box};
 use super::{Looked, Rule, Subject, every, usual};
 use crate::abi::Captured;
 use crate::conformance::{Check, Context};
@@ -36,7 +36,7 @@ fn look(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<L
         let face = faces[patch.ptex() as usize];
         let (low, high) = grown(around(model, face), model, subject);
         for vertex in patch.vertices {
-            let at = position(vertex) + model.centre();
+            let at = position(vertex);
             let off = (low - at).max(at - high).max_element();
             // NaN must not pass.
             check.hold(off <= rounding && at.is_finite(), || {
@@ -58,14 +58,10 @@ fn look(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<L
 
 /// The box of all faces that touch a face: its 1-ring.
 fn around(model: &Model, face: u32) -> Bounds {
-    let (topology, positions) = (model.topology(), model.mesh().positions());
+    let topology = model.topology();
     let corners = topology.face(face).iter();
     let faces = corners.flat_map(|&vertex| topology.vertex_faces(vertex));
-    let vertices = faces.flat_map(|corner| topology.face(corner.face));
-    let all = vertices.map(|&vertex| positions[vertex as usize]);
-    all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    })
+    box_of(model, faces.flat_map(|corner| topology.face(corner.face)))
 }
 
 /// The box that a method stays in under a scheme. Where no weight is negative that is the 1-ring's own. Surfaces that go through points, or bend

@@ -81,14 +81,14 @@ fn hold_device(
 ) -> Result<Looked> {
     let mut looked = Looked::default();
     let scale = diagonal(subject.model);
-    let origin = subject.model.centre() - plane.mesh.positions()[0];
+    let origin = subject.model.placement().local(plane.mesh.positions()[0]);
     each_patch(context, subject, LEVEL, noise_at_corners, |patch| {
         if is_folded(patch, plane.normal, scale) {
             // Then there is no side for normals to be on.
             return Ok(());
         }
         for vertex in patch.vertices {
-            let height = (position(vertex) + origin).dot(plane.normal) / scale;
+            let height = (position(vertex) - origin).dot(plane.normal) / scale;
             let off = degrees(normal(vertex), plane.normal);
             let missing = vertex.normal == [0.0; 3];
             check.hold(height.abs() < 1e-6 && off < 5e-4 && !missing, || {

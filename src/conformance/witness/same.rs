@@ -2,15 +2,14 @@
 
 use glam::DVec3;
 
-use super::drawn::used_box;
 use super::{Looked, Rule, Subject, every, usual};
 use crate::abi::Captured;
-use crate::conformance::capture::{Frame, captured, cut};
+use crate::conformance::capture::{Frame, bits, captured, cut};
 use crate::conformance::meshes::with_positions;
 use crate::conformance::{Check, Context};
 use crate::error::Result;
 use crate::gpu::Fill;
-use crate::mesh::Model;
+use crate::mesh::{Model, Placement};
 use crate::tessellation::Spacing;
 
 pub(super) const UNUSED: Rule = Rule {
@@ -24,7 +23,7 @@ pub(super) const UNUSED: Rule = Rule {
 
 pub(super) const MOVED: Rule = Rule {
     name: "moved",
-    rule: "a mesh that is moved, or scaled by a power of two, without rounding, has the same bits but for their exponents",
+    rule: "a mesh that is moved, or scaled by a power of two, without rounding, has the same bits in local units",
     source: "IEEE 754: sums and products of what is scaled by a power of two are so scaled",
     concerns: every,
     options: usual,
@@ -34,11 +33,9 @@ pub(super) const MOVED: Rule = Rule {
 /// Odd: not every vertex lies on a lattice.
 const LEVEL: f32 = 3.0;
 
-/// The mesh made to be compared: as large as 1, each coordinate a multiple of 2^-20, so that it can be moved and scaled without rounding. What no
-/// face uses is in its corner.
+/// The mesh made to be compared: about as large as 1, each coordinate a multiple of 2^-20, so that it can be moved and scaled without rounding. What
+/// no face uses is in its middle.
 fn exact(model: &Model) -> Vec<DVec3> {
-    let (low, high) = used_box(model);
-    let extent = (high - low).max_element().max(f64::MIN_POSITIVE);
     let mut used = vec![false; model.mesh().vertex_count()];
     for &vertex in model.mesh().faces().flatten() {
         used[vertex as usize] = true;
@@ -46,7 +43,7 @@ fn exact(model: &Model) -> Vec<DVec3> {
     let places = model.mesh().positions().iter().zip(used);
     places
         .map(|(&position, used)| match used {
-            true => ((position - low) / extent * GRID).round() / GRID,
+            true => (model.placement().local(position) * GRID).round() / GRID,
             false => DVec3::ZERO,
         })
         .collect()
@@ -81,14 +78,8 @@ fn lose_places(vertex: &mut Captured, reach: f32) {
     vertex.position = vertex.position.map(|x| (x + far) - far);
 }
 
-/// Holds two frames to the same vertices, with positions `scale` times as large.
-fn hold_same(
-    check: &mut Check,
-    subject: &Subject<'_>,
-    what: &str,
-    frames: [&Frame; 2],
-    scale: f32,
-) -> u64 {
+/// Holds two frames to the same vertices: positions are in local units.
+fn hold_same(check: &mut Check, subject: &Subject<'_>, what: &str, frames: [&Frame; 2]) -> u64 {
     let counts = frames.map(|frame| frame.passes.iter().map(Vec::len).collect::<Vec<_>>());
     let name = subject.method.name;
     check.hold(counts[0] == counts[1], || {
@@ -100,20 +91,19 @@ fn hold_same(
     let [first, second] = frames.map(|frame| frame.passes.iter().flatten());
     let mut count = 0;
     for (own, other) in first.zip(second) {
-        let wanted = Captured {
-            position: own.position.map(|x| x * scale),
-            ..*own
-        };
-        let same = wanted.position == other.position
-            && wanted.normal == other.normal
-            && wanted.uv == other.uv
-            && wanted.patch_number == other.patch_number;
-        check.hold(same, || {
-            format!("{name}, {what}: {other:?} instead of {wanted:?}")
+        check.hold(bits(own) == bits(other), || {
+            format!("{name}, {what}: {other:?} instead of {own:?}")
         });
         count += 1;
     }
     count
+}
+
+fn hold_placement(check: &mut Check, what: &str, other: &Other, wanted: Placement) {
+    let found = other.model.placement();
+    check.hold(found == wanted, || {
+        format!("{what}: {found:?} instead of {wanted:?}")
+    });
 }
 
 fn unused(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<Looked> {
@@ -125,11 +115,9 @@ fn unused(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result
         let more = [own.as_slice(), &[far]].concat();
         let other = draw(context, subject, &more)?;
         let what = format!("with a vertex at {far}");
-        check.hold(other.model.centre() == still.model.centre(), || {
-            format!("{what}: the centre is {}", other.model.centre())
-        });
+        hold_placement(check, &what, &other, still.model.placement());
         let frames = [&still.frame, &other.frame];
-        looked.count += hold_same(check, subject, &what, frames, 1.0);
+        looked.count += hold_same(check, subject, &what, frames);
     }
     Ok(looked)
 }
@@ -142,20 +130,31 @@ fn moved(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<
         let away: Vec<DVec3> = own.iter().map(|&p| p + offset).collect();
         let other = draw(context, subject, &away)?;
         let what = format!("moved by {offset}");
-        check.hold(
-            other.model.centre() == still.model.centre() + offset,
-            || format!("{what}: the centre is {}", other.model.centre()),
-        );
+        let own = still.model.placement();
+        let wanted = Placement {
+            centre: own.centre + offset,
+            ..own
+        };
+        hold_placement(check, &what, &other, wanted);
         let frames = [&still.frame, &other.frame];
-        looked.count += hold_same(check, subject, &what, frames, 1.0);
+        looked.count += hold_same(check, subject, &what, frames);
     }
-    for exponent in [-60, 60] {
-        let scale = f64::from(exponent).exp2();
+    for exponent in [-900, -60, 60, 900] {
+        let scale = 2f64.powi(exponent);
         let scaled: Vec<DVec3> = own.iter().map(|&p| scale * p).collect();
         let other = draw(context, subject, &scaled)?;
         let what = format!("2^{exponent} times as large");
+        let Placement {
+            centre,
+            scale: unit,
+        } = still.model.placement();
+        let wanted = Placement {
+            centre: scale * centre,
+            scale: scale * unit,
+        };
+        hold_placement(check, &what, &other, wanted);
         let frames = [&still.frame, &other.frame];
-        looked.count += hold_same(check, subject, &what, frames, scale as f32);
+        looked.count += hold_same(check, subject, &what, frames);
     }
     Ok(looked)
 }

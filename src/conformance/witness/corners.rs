@@ -66,13 +66,13 @@ fn interesting(subject: &Subject<'_>, faces: &[u32]) -> Prepared {
     let least = u32::from(sharp > 0);
     let among = all.iter().filter(|&&rank| rank >= least).count();
     let step = among.div_ceil(MOST_PATCHES).max(1);
-    let seen = std::cell::Cell::new(0);
+    let seen = std::cell::Cell::new(0_usize);
     chosen(&subject.prepared, |pass, number| {
         let fits = rank(pass, number).is_some_and(|rank| rank >= least);
         if fits {
             seen.set(seen.get() + 1);
         }
-        fits && (seen.get() - 1) % step == 0
+        fits && (seen.get() - 1).is_multiple_of(step)
     })
 }
 
@@ -101,7 +101,7 @@ fn hold_corner(
     corner: usize,
 ) -> Looked {
     let mut looked = Looked::default();
-    let sorted = patch.from_corner(corner);
+    let sorted = patch.at_corner(corner);
     let inside = sorted.iter().copied();
     let inside: Vec<&Captured> = inside.filter(|vertex| patch.is_inside(vertex)).collect();
     let [Some(own), Some(beside)] = [sorted.first(), inside.first()] else {

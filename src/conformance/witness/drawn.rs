@@ -42,7 +42,7 @@ impl Patch<'_> {
     }
 
     /// The vertices by their distance from a corner of the domain.
-    pub fn from_corner(&self, corner: usize) -> Vec<&Captured> {
+    pub fn at_corner(&self, corner: usize) -> Vec<&Captured> {
         let [x, y] = match self.pass.domain {
             Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][corner],
             Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]][corner],

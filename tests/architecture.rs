@@ -218,9 +218,10 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 17] = [
+const NAMED: [(&str, &str, &str); 18] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
+    ("src/conformance/models.rs", "quadtree", SCHEME),
     ("src/conformance/edges/pictures.rs", "quadtree", RING),
     ("src/conformance/robustness.rs", "quadtree", RING),
     ("tests/common/surfaces.rs", "quadtree", PLANS),
@@ -241,6 +242,7 @@ const NAMED: [(&str, &str, &str); 17] = [
 const PLANS: &str = "it is about plans, which one method has";
 const RING: &str = "it is about the scratch ring, which one method uses";
 const NO_RING: &str = "it needs one that does not use the ring";
+const SCHEME: &str = "its tests need one that refuses schemes";
 const TABLES: &str = "it is about tables, which are a method's own";
 const WORDS: &str = "it types what users type";
 

@@ -54,7 +54,8 @@ fn table() -> String {
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut of: BTreeMap<usize, Vec<String>> = BTreeMap::new();
     let own = ["help", "version"]; // of every program
-    let visible = |arg: &&Arg| arg.get_long().is_some_and(|name| !own.contains(&name));
+    let visible =
+        |arg: &&Arg| !arg.is_hide_set() && arg.get_long().is_some_and(|name| !own.contains(&name));
     let mut add = |arg: &Arg, whose: String| {
         let row = (spelling(arg), meaning(arg));
         let number = rows.iter().position(|known| *known == row);

@@ -64,17 +64,17 @@ fn draw(context: &Context, subject: &Subject<'_>, positions: &[DVec3]) -> Result
     let cut = cut(LEVEL, Spacing::Equal);
     let mut frame = captured(context, &model, prepared, cut, Fill::Discard)?;
     if context.is_wrong() {
-        let reach = model.positions().into_iter().map(|p| p.abs().max_element());
-        let reach = reach.fold(0.0, f32::max);
-        let all = frame.passes.iter_mut().flatten();
-        all.for_each(|vertex| lose_places(vertex, reach));
+        let all = model.mesh().positions().iter();
+        let farthest = all.map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let far = (farthest / model.placement().scale) as f32;
+        let vertices = frame.passes.iter_mut().flatten();
+        vertices.for_each(|vertex| lose_places(vertex, far));
     }
     Ok(Other { model, frame })
 }
 
-/// A position as if the middle of the model were a million times as far away.
-fn lose_places(vertex: &mut Captured, reach: f32) {
-    let far = 1e6 * reach;
+/// A position that was computed where `far` has its last place: as with a middle that goes by all vertices, or without any.
+fn lose_places(vertex: &mut Captured, far: f32) {
     vertex.position = vertex.position.map(|x| (x + far) - far);
 }
 

@@ -23,8 +23,9 @@
 macro_rules! chapters {
     ($($chapter:ident)*) => {
         $(
-            #[doc = include_str!(concat!(stringify!($chapter), ".md"))]
-            pub mod $chapter {}
+            pub mod $chapter {
+                #![doc = include_str!(concat!(stringify!($chapter), ".md"))]
+            }
         )*
     };
 }

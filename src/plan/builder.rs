@@ -70,7 +70,7 @@ pub struct Plan {
     pub nodes: Vec<Node>,
     /// Sorted by level.
     pub stencils: Vec<Stencil>,
-    /// At each corner whose normal is that of its surroundings, see [`nearby`](super::nearby): two tangents, weights of the ring.
+    /// At each corner whose normal is that of its surroundings, see `plan/nearby.rs`: two tangents, weights of the ring.
     pub nearby: [Option<[Vec<f64>; 2]>; 4],
 }
 

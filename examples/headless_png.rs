@@ -25,12 +25,12 @@ use gpu_allocator::vulkan::{
     Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
 };
 use hullform::gpu::{
-    Buffer, Cut, Driver, FeatureChain, Fill, Layout, Pipelines, Support, SurfaceOptions, Target,
-    TessellatedSurface, View, ring, workarounds,
+    Buffer, Cut, Driver, FeatureChain, Fill, Layout, Pipelines, Shading, Support, SurfaceOptions,
+    Target, TessellatedSurface, View, ring, workarounds,
 };
 use hullform::mesh::{DEFAULT_BUILTIN, Model, builtin, read_obj};
 use hullform::method::{Displacement, MethodOptions, method};
-use hullform::{abi, tessellation::Spacing};
+use hullform::tessellation::Spacing;
 
 const WIDTH: u32 = 960;
 const HEIGHT: u32 = 600;
@@ -200,7 +200,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             target,
             surface.options().backend,
             cut.spacing,
-            Fill::Solid,
+            Fill::Solid(Shading::Lit),
         )?
     };
     let pipelines = Own::new(pipelines, |pipelines| {
@@ -466,7 +466,6 @@ fn view(model: &Model) -> View {
             .inverse()
             .transform_point3(Vec3::ZERO)
             .to_array(),
-        shading: abi::SHADING_LIT,
         displacement: Displacement::default(),
     }
 }

@@ -29,7 +29,7 @@ const uint BINDING_INSTANCES = 11u;
 // Set 0, binding: the first of a method's own tables.
 const uint BINDING_TABLES = 12u;
 // How many tables a method may have of its own.
-const uint TABLES = 5u;
+const uint TABLES = 4u;
 // Step of points: positions are sums of weighted control vertices.
 const uint POINTS_BLEND = 0u;
 // Step of points: the same, and normals are perpendicular to two more such sums, the tangents.
@@ -54,8 +54,8 @@ const uint CONTROL_INVOCATIONS = 32u;
 const uint HIGHEST_LEVEL = 10u;
 // What a patch is evaluated by: the inside, its four edges, its four corners.
 const uint USES = 9u;
-// Instead of a plan: control vertices themselves.
-const uint NO_PLAN = 4294967295u;
+// Instead of the number of a pair of tangents: there is none.
+const uint NO_TANGENTS = 4294967295u;
 // Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
 const uint USE_FLIPPED = 1u;
 // Use flag: the patch has the first half of the edge.
@@ -90,8 +90,8 @@ const uint NODE_TERMINAL = 4u;
 const uint NODE_EXTRAORDINARY = 5u;
 // Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
 const uint NODE_CURVE = 6u;
-// Points in a level of a terminal node.
-const uint TERMINAL_POINTS = 25u;
+// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
+const uint TERMINAL_POINTS = 64u;
 // Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
 const uint PATCH_EVEN_EDGE = 1u;
 // Patch flag: part of an n-gon, with half the tess level of a quad.
@@ -171,25 +171,12 @@ struct Patch {
     uint valences;
 };
 
-// A plan: where its parts begin, and how many stencils each level needs.
-struct PlanHeader {
-    // Vertices of the 1-ring.
-    uint ring_size;
-    // Where its weights begin, `ring_size` a stencil.
-    uint weights;
-    // Its root.
-    uint root;
-    // Its deepest level.
-    uint max_level;
-    // The number of stencils needed at level 0..=11; beyond the deepest level as there. An edge beside an n-gon is one level deeper than
-    // the patches that have half of it.
-    uint counts[12];
-};
-
 // What a patch is evaluated by, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
 struct Border {
-    // The plans, or `NO_PLAN`.
-    uint plans[9];
+    // How many vertices the rings of the plans have; 0 where there is no plan.
+    uint sizes[9];
+    // Where the plans' weights begin, a ring's for each stencil.
+    uint weights[9];
     // The nodes that walks begin with.
     uint roots[9];
     // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has; not for the inside.
@@ -200,9 +187,9 @@ struct Border {
     uint plain;
     // How many these are.
     uint plain_count;
-    // The points that a patch needs in the ring at level 0..=10.
-    uint counts[11];
-    // At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_PLAN`.
+    // At level 0..=10, where in a patch's slot the points of each plan end. The slot ends where the last do.
+    uint ends[11][9];
+    // At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_TANGENTS`.
     uint nearby[4];
 };
 
@@ -288,8 +275,6 @@ struct Frame {
     mat4 view_projection;
     // The eye in local units.
     vec3 eye;
-    // `SHADING_...`
-    uint shading;
     // The tess level of a quad, 1..=64.
     float level;
     // `FRAME_...` flags.

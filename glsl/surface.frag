@@ -8,6 +8,9 @@
 #include "method"
 #include "lib/shading.glsl"
 
+// One of SHADING_...; a constant of the pipeline, so that no fragment pays for what others are shaded by.
+layout(constant_id = 0) const uint SHADING = SHADING_LIT;
+
 // Centroid: at silhouettes a pixel's middle lies outside of the triangle, and extrapolated normals would glitter. A position may: it is where
 // the pixel's own line of sight meets the triangle's plane, and differences from pixel to pixel lie in that plane.
 layout(location = 0) in vec3 in_position;
@@ -74,7 +77,7 @@ void main() {
     vec3 normal = seen_normal(to_eye);
     vec3 colour = vec3(0.56, 0.33, 0.22);
     float gloss = 0.25;
-    switch (frame.shading) {
+    switch (SHADING) {
     case SHADING_NORMAL: out_colour = vec4(0.5 + 0.5 * unit(in_normal), 1.0); return;
     case SHADING_LINES: out_colour = vec4(vec3(0.02), 1.0); return;
     case SHADING_PATCH: colour = patch_colour(in_patch * 2u + record.ptex); break;

@@ -53,6 +53,12 @@ impl<const N: usize> Shared for [u32; N] {
     }
 }
 
+impl<const N: usize, const M: usize> Shared for [[u32; N]; M] {
+    fn declare(name: &str) -> String {
+        format!("uint {name}[{M}][{N}]")
+    }
+}
+
 /// Declares constants, and how they read in GLSL.
 macro_rules! constants {
     ($($(#[doc = $doc:literal])* $name:ident = $value:expr;)*) => {
@@ -131,7 +137,7 @@ constants! {
     /// Set 0, binding: the first of a method's own tables.
     BINDING_TABLES = 12;
     /// How many tables a method may have of its own.
-    TABLES = 5;
+    TABLES = 4;
 
     /// Step of points: positions are sums of weighted control vertices.
     POINTS_BLEND = 0;
@@ -158,8 +164,8 @@ constants! {
     HIGHEST_LEVEL = 10;
     /// What a patch is evaluated by: the inside, its four edges, its four corners.
     USES = 9;
-    /// Instead of a plan: control vertices themselves.
-    NO_PLAN = 0xffff_ffff;
+    /// Instead of the number of a pair of tangents: there is none.
+    NO_TANGENTS = 0xffff_ffff;
     /// Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
     USE_FLIPPED = 1;
     /// Use flag: the patch has the first half of the edge.
@@ -195,8 +201,8 @@ constants! {
     NODE_EXTRAORDINARY = 5;
     /// Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
     NODE_CURVE = 6;
-    /// Points in a level of a terminal node.
-    TERMINAL_POINTS = 25;
+    /// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
+    TERMINAL_POINTS = 64;
 
     /// Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
     PATCH_EVEN_EDGE = 1;
@@ -285,25 +291,12 @@ structs! {
         valences: u32,
     }
 
-    /// A plan: where its parts begin, and how many stencils each level needs.
-    PlanHeader {
-        /// Vertices of the 1-ring.
-        ring_size: u32,
-        /// Where its weights begin, `ring_size` a stencil.
-        weights: u32,
-        /// Its root.
-        root: u32,
-        /// Its deepest level.
-        max_level: u32,
-        /// The number of stencils needed at level 0..=11; beyond the deepest level as there. An edge beside an n-gon is one level deeper than
-        /// the patches that have half of it.
-        counts: [u32; 12],
-    }
-
     /// What a patch is evaluated by, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
     Border {
-        /// The plans, or `NO_PLAN`.
-        plans: [u32; 9],
+        /// How many vertices the rings of the plans have; 0 where there is no plan.
+        sizes: [u32; 9],
+        /// Where the plans' weights begin, a ring's for each stencil.
+        weights: [u32; 9],
         /// The nodes that walks begin with.
         roots: [u32; 9],
         /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has; not for the inside.
@@ -314,9 +307,9 @@ structs! {
         plain: u32,
         /// How many these are.
         plain_count: u32,
-        /// The points that a patch needs in the ring at level 0..=10.
-        counts: [u32; 11],
-        /// At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_PLAN`.
+        /// At level 0..=10, where in a patch's slot the points of each plan end. The slot ends where the last do.
+        ends: [[u32; 9]; 11],
+        /// At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_TANGENTS`.
         nearby: [u32; 4],
     }
 
@@ -402,8 +395,6 @@ structs! {
         view_projection: [[f32; 4]; 4],
         /// The eye in local units.
         eye: [f32; 3],
-        /// `SHADING_...`
-        shading: u32,
         /// The tess level of a quad, 1..=64.
         level: f32,
         /// `FRAME_...` flags.

@@ -13,7 +13,7 @@ use hullform::gpu::shaders::MODULES;
 
 const TABLE_1: u32 = abi::BINDING_TABLES + 1;
 const TABLE_2: u32 = abi::BINDING_TABLES + 2;
-const TABLE_4: u32 = abi::BINDING_TABLES + 4;
+const TABLE_3: u32 = abi::BINDING_TABLES + 3;
 
 /// Every module that shares `abi` with the library: all but those of the conformance suite.
 fn modules() -> Vec<(String, Vec<u8>)> {
@@ -37,6 +37,11 @@ fn all_modules() -> Vec<(String, Vec<u8>)> {
     shipped.chain(built).collect()
 }
 
+/// The modules that read plans.
+fn is_quadtree(module: &str) -> bool {
+    module.starts_with("quadtree.") || module.starts_with("quadtree_long.")
+}
+
 /// The struct whose elements, or itself, a block holds; the name it has in Rust.
 fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
     match block {
@@ -50,11 +55,10 @@ fn shared_struct(module: &str, block: Block) -> Option<&'static str> {
             abi::BINDING_POINT_TERMS => Some("PointTerm"),
             // The tables of this method; another's are its own.
             abi::BINDING_DRAWS => Some("PatchDraw"),
-            abi::BINDING_TABLES if module.starts_with("quadtree.") => Some("PlanHeader"),
-            TABLE_1 if module.starts_with("quadtree.") => Some("Node"),
+            abi::BINDING_TABLES if is_quadtree(module) => Some("Node"),
             TABLE_1 if module.starts_with("bft") => Some("TableFace"),
             TABLE_2 if module.starts_with("bft") => Some("TablePlace"),
-            TABLE_4 if module.starts_with("quadtree.") => Some("Border"),
+            TABLE_3 if is_quadtree(module) => Some("Border"),
             _ => None,
         },
     }
@@ -183,17 +187,19 @@ fn captured_vertices_begin_behind_their_count() {
     }
 }
 
-/// Arrays within structs: the counts of a plan's header.
+/// Arrays within structs: what tells where the points of a slot end.
 #[test]
-fn counts_in_a_plans_header_are_words() {
+fn ends_in_a_border_are_words() {
     let bytes = modules();
-    let headers = bytes.iter().filter(|(name, _)| name == "quadtree.tesc");
-    for (_, bytes) in headers {
-        let shape = &blocks(bytes)[&Block::Buffer {
-            binding: abi::BINDING_TABLES,
-        }];
-        let header = inner(shape).1.expect("a header");
-        assert_eq!(header.members.last(), Some(&Some(Part::Array(4, None))));
+    let modules = bytes.iter().filter(|(name, _)| name == "quadtree.tesc");
+    for (_, bytes) in modules {
+        let shape = &blocks(bytes)[&Block::Buffer { binding: TABLE_3 }];
+        let border = inner(shape).1.expect("a border");
+        let [.., ends, _] = &border.members[..] else {
+            panic!("a border has more members");
+        };
+        let level = Some(Box::new(Part::Array(4, None)));
+        assert_eq!(ends, &Some(Part::Array(36, level)));
     }
 }
 

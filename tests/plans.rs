@@ -10,7 +10,7 @@ use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
 use hullform::method::{METHODS, Method, method};
 use hullform::plan::{
-    Catalogue, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Plans, Ring, VertexKind,
+    Catalogue, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Ring, VertexKind,
     VertexPlan, walk,
 };
 use hullform::subdivision::{Blend, LimitSurface};
@@ -104,9 +104,10 @@ fn able(model: &Model) -> impl Iterator<Item = &'static Method> + '_ {
 }
 
 /// The points that the evaluation at (u, v) reads; None where it stops at an extraordinary vertex.
-fn points_read(plans: Plans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
-    let leaf = walk(plans, plans.headers[plan as usize].root, uv);
-    let point = |i: u32| plans.point(leaf.points + i % 4 + leaf.stride * (i / 4));
+fn points_read(packed: &PackedPlans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
+    let plans = packed.view();
+    let leaf = walk(plans, packed.headers[plan as usize].root, uv);
+    let point = |i: u32| plans.point(leaf.points + i);
     (leaf.kind != abi::NODE_EXTRAORDINARY).then(|| (0..16).map(point).collect())
 }
 
@@ -120,7 +121,7 @@ fn hold_counts(packed: &PackedPlans, plan: u32, level: f32, coordinates: &[[f32;
     };
     let count = header.counts[required_level(&levels, header.max_level) as usize];
     for &uv in coordinates {
-        let read = points_read(packed.view(), plan, Vec2::from(uv));
+        let read = points_read(packed, plan, Vec2::from(uv));
         let read = read.unwrap_or_else(|| panic!("plan {plan}: no patch at {uv:?}"));
         let last = read.iter().max().expect("an evaluation reads points");
         assert!(

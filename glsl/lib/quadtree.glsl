@@ -5,19 +5,20 @@
 #include "lib/crease.glsl"
 #include "lib/interface.glsl"
 
-layout(set = 0, binding = BINDING_TABLES + 0, scalar) readonly buffer PlanTable { PlanHeader plans[]; };
-layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer NodeTable { Node nodes[]; };
-layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer PointTable { uint point_halves[]; };
-layout(set = 0, binding = BINDING_TABLES + 3, scalar) readonly buffer WeightTable { float weights[]; };
-layout(set = 0, binding = BINDING_TABLES + 4, scalar) readonly buffer BorderTable { Border borders[]; };
+layout(set = 0, binding = BINDING_TABLES + 0, scalar) readonly buffer NodeTable { Node nodes[]; };
+layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer PointTable { uvec2 point_rows[]; };
+layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer WeightTable { float weights[]; };
+layout(set = 0, binding = BINDING_TABLES + 3, scalar) readonly buffer BorderTable { Border borders[]; };
 
-// Point `number` of the nodes' lists: two 16-bit halves a word, the lower first.
-uint node_point(uint number) { return point_halves[number >> 1u] >> ((number & 1u) * 16u) & 0xffffu; }
+// The row of points that begins at `number` in the nodes' lists: two 16-bit halves a word, the lower first.
+uvec4 node_row(uint number) {
+    uvec2 row = point_rows[number >> 2u];
+    return uvec4(row.x & 0xffffu, row.x >> 16u, row.y & 0xffffu, row.y >> 16u);
+}
 
 // Where a walk ends: in a B-spline. NODE_EXTRAORDINARY has no points: no tess coordinate inside gets there.
 struct Leaf {
     uint points;
-    uint stride;
     vec2 uv;
     float scale;
     uint edge;
@@ -32,15 +33,15 @@ Leaf terminal_leaf(uint points, uint corner, uint levels, vec2 uv, float scale) 
     vec2 from_corner = mix(uv, other, at);
     uint exponent = floatBitsToUint(max(from_corner.x, from_corner.y)) >> 23u;
     uint level = 126u - min(exponent, 126u);
-    if (level >= levels) return Leaf(0u, 4u, vec2(0.0), scale, corner, 0.0, NODE_EXTRAORDINARY);
+    if (level >= levels) return Leaf(0u, vec2(0.0), scale, corner, 0.0, NODE_EXTRAORDINARY);
     float grown = power_of_two(int(level));
     precise vec2 local = from_corner * grown;
     bvec2 child = notEqual(greaterThanEqual(local, vec2(0.5)), at);
     precise vec2 beyond = 1.0 - local;
     precise vec2 inside = 2.0 * mix(local, beyond, at) - vec2(child);
     precise float whole = scale * grown * 2.0;
-    uint first = points + TERMINAL_POINTS * level + uint(child.x) + 5u * uint(child.y);
-    return Leaf(first, 5u, inside, whole, 0u, 0.0, NODE_TERMINAL);
+    uint first = points + TERMINAL_POINTS * level + 16u * (uint(child.x) + 2u * uint(child.y));
+    return Leaf(first, inside, whole, 0u, 0.0, NODE_TERMINAL);
 }
 
 // The tree of an edge is walked along v = 0.
@@ -48,20 +49,24 @@ Leaf find_leaf(uint root, vec2 from) {
     precise vec2 uv = from;
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     bvec2 upper = greaterThanEqual(uv, vec2(0.5));
-    Node node = nodes[root];
+    uint number = root;
+    uint kind_word = nodes[root].kind;
+    uint points = nodes[root].points;
     precise float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
-    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (node.kind & 15u) == NODE_INTERNAL; ++depth) {
+    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL; ++depth) {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);
         scale *= 2.0;
-        node = nodes[node.points + uint(half_plane.x) + 2u * uint(half_plane.y)];
+        number = points + uint(half_plane.x) + 2u * uint(half_plane.y);
+        kind_word = nodes[number].kind;
+        points = nodes[number].points;
     }
-    uint kind = node.kind & 15u;
-    uint place = node.kind >> 4u & 15u;
-    if (kind == NODE_TERMINAL) return terminal_leaf(node.points, place, node.kind >> 8u, uv, scale);
-    return Leaf(node.points, 4u, uv, scale, place, node.sharpness, kind);
+    uint kind = kind_word & 15u;
+    uint place = kind_word >> 4u & 15u;
+    if (kind == NODE_TERMINAL) return terminal_leaf(points, place, kind_word >> 8u, uv, scale);
+    return Leaf(points, uv, scale, place, nodes[number].sharpness, kind);
 }
 
 #endif

@@ -1,7 +1,7 @@
 // Adaptive quadtrees (Brainerd et al. 2016) for faces that are no plain B-splines. Twin of `method/quadtree/twin.rs`.
 //
-// The control points of a patch are the vertices of its 1-ring, up to 32; what a larger ring has beyond these is fetched by the control
-// shader itself (section 5).
+// The control points of a patch are the vertices of its 1-ring, up to 32; with LONG_RINGS, what a longer ring has beyond these is fetched by the
+// control shader itself (section 5).
 //
 // A patch's slot in the scratch ring begins with a head for each of its uses: the origin that the use's points are relative to, and where
 // these begin in the slot. Then come the plain vertices of its border, and the points of each plan.
@@ -23,18 +23,23 @@ const uint CONTROL_POINTS = CONTROL_INVOCATIONS;
 
 #ifdef STAGE_VERTEX
 vec3 control_point(Patch record, uint number) {
-    uint ring_size = plans[borders[record.plan].plans[0]].ring_size;
-    return control_vertex(controls[record.controls + min(number, ring_size - 1u)]);
+    return control_vertex(controls[record.controls + min(number, borders[record.plan].sizes[0] - 1u)]);
 }
 #endif
 
 #ifdef STAGE_CONTROL
-uint scratch_points(Patch record, uint level) { return borders[record.plan].counts[min(level, HIGHEST_LEVEL)]; }
+// Where the points of a use end in the slot, and where the slot does.
+uint points_end(Patch record, uint level, uint number) { return borders[record.plan].ends[min(level, HIGHEST_LEVEL)][number]; }
+uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
 
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
     vec3 piped = in_point[min(place, CONTROL_POINTS - 1u)];
+#ifdef LONG_RINGS
     return place < CONTROL_POINTS ? piped : control_vertex(controls[record.controls + place]);
+#else
+    return piped;
+#endif
 }
 
 // Adds `term` to a sum of many, and keeps what rounding takes away (Kahan 1965).
@@ -46,42 +51,66 @@ void add_compensated(inout vec3 sum, inout vec3 lost, vec3 term) {
     lost = more;
 }
 
-// A stencil's sum over the ring of a plan, relative to `origin`: tangents deep in the tree are differences of small numbers then. `places`
-// is where it stands which vertices of the patch's ring these are; the plan of the inside has them all.
+// The ring of a use: how many vertices it has, where their numbers in the patch's ring stand, and where its weights begin. The inside has the
+// patch's ring itself.
+struct Ring {
+    uint size;
+    uint places;
+    uint weights;
+    bool inside;
+};
+
+// Tables are read word by word: of a record that is passed by value, compilers copy all for each invocation.
+//
+// Bounded by the weights that there are for so many stencils: a plan that is garbage must not keep the device busy for ever. The factor is for
+// rounding.
+Ring use_ring(Patch record, uint number, uint stencils) {
+    uint size = borders[record.plan].sizes[number];
+    precise float needed = float(size) * float(stencils);
+    precise float most = 1.00001 * float(weights.length());
+    return Ring(needed <= most ? size : 0u, borders[record.plan].rings[number], borders[record.plan].weights[number], number == 0u);
+}
+
+// Vertex i of it.
+vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : controls[ring.places + i]); }
+
+// A stencil's sum over a ring, relative to `origin`: tangents deep in the tree are differences of small numbers then.
 //
 // Rings too long for the vertex shader are also too long for a plain sum: where hundreds of faces meet, the tangents of neighbours differ by
 // less than it would lose.
-vec3 stencil_point(Patch record, PlanHeader plan, bool inside, uint places, vec3 origin, uint number) {
-    uint weight = plan.weights + number * plan.ring_size;
-    bool plain = plan.ring_size <= CONTROL_POINTS;
+vec3 stencil_point(Patch record, Ring ring, vec3 origin, uint number) {
+    uint weight = ring.weights + number * ring.size;
     precise vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < (plain && inside ? plan.ring_size : 0u); ++i) {
-        sum += weights[weight + i] * (in_point[i] - origin);
-    }
-    for (uint i = 0u; i < (plain && !inside ? plan.ring_size : 0u); ++i) {
-        sum += weights[weight + i] * (ring_point(record, controls[places + i]) - origin);
-    }
+#ifdef LONG_RINGS
     vec3 lost = vec3(0.0);
-    for (uint i = 0u; i < (plain ? 0u : plan.ring_size); ++i) {
-        precise vec3 term = weights[weight + i] * (ring_point(record, inside ? i : controls[places + i]) - origin);
-        add_compensated(sum, lost, term);
+    for (uint i = 0u; i < ring.size; ++i) {
+        precise vec3 term = weights[weight + i] * (ring_vertex(record, ring, i) - origin);
+        precise vec3 next = sum + term;
+        if (ring.size > CONTROL_POINTS) {
+            add_compensated(sum, lost, term);
+        } else {
+            sum = next;
+        }
     }
+#else
+    for (uint i = 0u; i < ring.size; ++i) sum += weights[weight + i] * (ring_vertex(record, ring, i) - origin);
+#endif
     return sum;
 }
 
 // The pair of tangents whose first is stencil `number`, as `stencil_point`.
-Tangents ring_tangents(Patch record, PlanHeader plan, bool inside, uint places, uint number) {
-    uint weight = plan.weights + number * plan.ring_size;
-    vec3 origin = ring_point(record, inside ? 0u : controls[places]);
+Tangents ring_tangents(Patch record, Ring ring, uint number) {
+    uint weight = ring.weights + number * ring.size;
+    vec3 origin = ring_vertex(record, ring, 0u);
     vec3 du = vec3(0.0);
     vec3 dv = vec3(0.0);
     vec3 lost_u = vec3(0.0);
     vec3 lost_v = vec3(0.0);
     precise vec2 spread = vec2(0.0);
     precise vec2 total = vec2(0.0);
-    for (uint i = 0u; i < plan.ring_size; ++i) {
-        precise vec3 spoke = ring_point(record, inside ? i : controls[places + i]) - origin;
-        vec2 pair = vec2(weights[weight + i], weights[weight + plan.ring_size + i]);
+    for (uint i = 0u; i < ring.size; ++i) {
+        precise vec3 spoke = ring_vertex(record, ring, i) - origin;
+        vec2 pair = vec2(weights[weight + i], weights[weight + ring.size + i]);
         precise vec3 along_u = pair.x * spoke;
         precise vec3 along_v = pair.y * spoke;
         add_compensated(du, lost_u, along_u);
@@ -94,103 +123,107 @@ Tangents ring_tangents(Patch record, PlanHeader plan, bool inside, uint places, 
 
 // The normal at the patch's corner that is use `number`. It depends on nothing but what all who share it have; at cusps, and between two sharp edges
 // of a single face, on the face.
-vec3 vertex_normal(Patch record, PlanHeader plan, uint number) {
+//
+// There are two pairs of tangents at most, the limit's and those that may stand in for it; the loop makes them one piece of code.
+vec3 vertex_normal(Patch record, uint number) {
     uint flags = borders[record.plan].flags[number];
-    uint places = borders[record.plan].rings[number];
-    uint tangents_nearby = borders[record.plan].nearby[number - 5u];
-    bool has_nearby = tangents_nearby != NO_PLAN;
-    vec3 nearby = vec3(0.0);
-    if (has_nearby) {
-        PlanHeader own = plans[borders[record.plan].plans[0]];
-        own.ring_size = min(own.ring_size, uint(weights.length()));
-        nearby = clear_normal(ring_tangents(record, own, true, 0u, tangents_nearby));
+    uint near_pair = borders[record.plan].nearby[number - 5u];
+    bool has_near = near_pair != NO_TANGENTS;
+    uint limit_pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
+    Tangents limit;
+    vec3 limit_normal = vec3(0.0);
+    vec3 normal = vec3(0.0);
+    for (uint i = 0u; i < 2u; ++i) {
+        Ring ring = use_ring(record, i == 1u && has_near ? 0u : number, 2u);
+        bool wanted = i == 0u ? (flags & USE_CUSP) == 0u : has_near || (flags & USE_SPARE) != 0u;
+        ring.size = wanted ? ring.size : 0u;
+        Tangents tangents = ring_tangents(record, ring, i == 0u ? limit_pair : has_near ? near_pair : limit_pair + 2u);
+        normal = clear_normal(tangents);
+        if (i == 0u) {
+            limit = tangents;
+            limit_normal = normal;
+        }
     }
-    if ((flags & USE_CUSP) != 0u) return nearby;
-    uint pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
-    Tangents tangents = ring_tangents(record, plan, false, places, pair);
-    vec3 limit = clear_normal(tangents);
-    if (has_nearby) return normal_of_single(tangents, limit, nearby);
-    if (limit == vec3(0.0) && (flags & USE_SPARE) != 0u) {
-        return clear_normal(ring_tangents(record, plan, false, places, pair + 2u));
-    }
-    return limit;
+    if ((flags & USE_CUSP) != 0u) return normal;
+    if (has_near) return normal_of_single(limit, limit_normal, normal);
+    return limit_normal == vec3(0.0) ? normal : limit_normal;
 }
 
-// Where the parts of a slot end: the heads, the plain vertices, the points of each use's plan.
+// The parts of a slot: the heads, the plain vertices from USES on, the points of each use's plan.
 struct Parts {
-    uint plain;
+    uint plain_end;
     uint ends[USES];
 };
 
-// How many points of a use's plan are in the slot.
-uint use_points(PlanHeader header, uint flags, uint level) {
-    bool halved = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u;
-    return (flags & USE_LIMIT) != 0u ? 2u : header.counts[min(level + uint(halved), HIGHEST_LEVEL + 1u)];
-}
-
-// Writes the heads on the way, each by the invocation of its number.
-Parts find_parts(Patch record, uint slot, uint level, uint count) {
+Parts find_parts(Patch record, uint level) {
     Parts parts;
-    parts.plain = USES + borders[record.plan].plain_count;
-    uint end = parts.plain;
-    for (uint number = 0u; number < USES; ++number) {
-        uint plan = borders[record.plan].plans[number];
-        bool planned = plan != NO_PLAN;
-        if (gl_InvocationID == number && count > 0u) {
-            uint first = number == 0u ? 0u : controls[borders[record.plan].rings[number]];
-            vec3 origin = planned ? ring_point(record, first) : vec3(0.0);
-            scratch[slot + number] = vec4(origin, float(planned ? end : USES));
-        }
-        if (planned) end += use_points(plans[plan], borders[record.plan].flags[number], level);
-        parts.ends[number] = end;
-    }
+    parts.plain_end = USES + borders[record.plan].plain_count;
+    for (uint number = 0u; number < USES; ++number) parts.ends[number] = points_end(record, level, number);
     return parts;
 }
 
-// Point `next` of the slot, which is one of a plan. Each invocation finds the plan of its own point: parts are short, and if all went through
-// them together most would wait most of the time.
-vec3 plan_point(Patch record, Parts parts, uint level, uint count, uint next) {
-    uint number = 0u;
-    uint start = parts.plain;
-    for (uint i = 0u; i < USES - 1u; ++i) {
-        bool beyond = next >= parts.ends[i];
-        number = beyond ? i + 1u : number;
-        start = beyond ? parts.ends[i] : start;
+// A stretch of the slot: the points of one use.
+struct Part {
+    uint number;
+    uint start;
+    uint end;
+};
+
+// The part that point `next` is in; none of the inside.
+Part find_part(Parts parts, uint next) {
+    Part part = Part(1u, parts.ends[0], parts.ends[1]);
+    for (uint i = 2u; i < USES; ++i) {
+        bool beyond = next >= parts.ends[i - 1u];
+        part.number = beyond ? i : part.number;
+        part.start = beyond ? parts.ends[i - 1u] : part.start;
+        part.end = beyond ? parts.ends[i] : part.end;
     }
-    uint plan = borders[record.plan].plans[number];
-    uint flags = borders[record.plan].flags[number];
-    uint places = borders[record.plan].rings[number];
-    bool inside = number == 0u;
-    PlanHeader header = plans[plan != NO_PLAN ? plan : 0u];
-    // Bounded by the weights that there are: a plan that is garbage must not keep the device busy for ever.
-    uint points = use_points(header, flags, level);
-    header.ring_size = min(header.ring_size, uint(weights.length()) / max(min(points, count), 1u));
-    uint stencil = next - start;
-    if ((flags & USE_LIMIT) != 0u && stencil > 0u) return vertex_normal(record, header, number);
-    vec3 origin = ring_point(record, inside ? 0u : controls[places]);
-    return stencil_point(record, header, inside, places, origin, stencil);
+    return part;
 }
 
-// Fills the slot. Every 32nd point is this invocation's.
+// The head of use `number`.
+vec4 use_head(Patch record, Parts parts, uint number) {
+    bool planned = borders[record.plan].sizes[number] > 0u;
+    uint first = number == 0u ? 0u : controls[borders[record.plan].rings[number]];
+    uint start = parts.plain_end;
+    for (uint i = 1u; i < USES; ++i) start = number == i ? parts.ends[i - 1u] : start;
+    return vec4(planned ? ring_point(record, first) : vec3(0.0), float(planned ? start : USES));
+}
+
+// Fills the slot, stretch by stretch: every 32nd point is this invocation's. What differs is in loops of its own, since machines that run
+// invocations abreast go through all code that one of them needs. Of edges and corners each invocation finds the part that its own point is in:
+// these are short, and if all went through them together most would wait most of the time.
 void run_stencils(Patch record, uint slot, uint level, uint count) {
-    Parts parts = find_parts(record, slot, level, count);
+    Parts parts = find_parts(record, level);
+    if (gl_InvocationID < USES && count > 0u) scratch[slot + gl_InvocationID] = use_head(record, parts, gl_InvocationID);
     uint plain = borders[record.plan].plain - USES;
-    uint next = USES + gl_InvocationID;
-    for (; next < min(parts.plain, count); next += CONTROL_INVOCATIONS) {
-        scratch[slot + next] = vec4(ring_point(record, controls[plain + next]), 0.0);
+    for (uint next = USES + gl_InvocationID; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
+        scratch[slot + next].xyz = ring_point(record, controls[plain + next]);
     }
-    for (; next < count; next += CONTROL_INVOCATIONS) {
-        scratch[slot + next] = vec4(plan_point(record, parts, level, count, next), 0.0);
+    Ring inside = use_ring(record, 0u, min(parts.ends[0] - parts.plain_end, count));
+    vec3 origin = ring_point(record, 0u);
+    for (uint next = parts.plain_end + gl_InvocationID; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
+        scratch[slot + next].xyz = stencil_point(record, inside, origin, next - parts.plain_end);
+    }
+    for (uint next = parts.ends[0] + gl_InvocationID; next < count; next += CONTROL_INVOCATIONS) {
+        Part part = find_part(parts, next);
+        Ring ring = use_ring(record, part.number, min(part.end - part.start, count));
+        bool is_normal = part.number >= 5u && next > part.start;
+        if (is_normal) ring.size = 0u;
+        vec3 point = stencil_point(record, ring, ring_vertex(record, ring, 0u), next - part.start);
+        if (!is_normal) scratch[slot + next].xyz = point;
+    }
+    for (uint number = 5u + gl_InvocationID; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
+        uint place = parts.ends[number - 1u] + 1u;
+        if (place < min(parts.ends[number], count)) scratch[slot + place].xyz = vertex_normal(record, number);
     }
 }
 #endif
 
 #ifdef STAGE_EVALUATION
-vec3 scratch_point(uint first, uint number) { return scratch[first + node_point(number)].xyz; }
-
 Row scratch_row(uint first, uint number, Basis u) {
-    return bspline_row(u, scratch_point(first, number), scratch_point(first, number + 1u), scratch_point(first, number + 2u),
-                       scratch_point(first, number + 3u));
+    uvec4 row = first + node_row(number);
+    return bspline_row(u, scratch[row.x].xyz, scratch[row.y].xyz, scratch[row.z].xyz, scratch[row.w].xyz);
 }
 
 // Not on infinite creases and at cusps.
@@ -218,8 +251,8 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
     if (leaf.kind == NODE_CURVE) v = CURVE;
     uint row = leaf.points + 16u * (flags >> USE_SIDE_SHIFT);
-    Surface surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + leaf.stride, u),
-                              scratch_row(first, row + 2u * leaf.stride, u), scratch_row(first, row + 3u * leaf.stride, u));
+    Surface surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + 4u, u),
+                              scratch_row(first, row + 8u, u), scratch_row(first, row + 12u, u));
     surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;

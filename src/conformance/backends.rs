@@ -15,7 +15,7 @@ use crate::conformance::capture::{Frame, SPACINGS, bits, capturing, cut, prepare
 use crate::conformance::meshes::{can_draw, under};
 use crate::conformance::{Case, Check, Context, Finding, Group, Random};
 use crate::error::Result;
-use crate::gpu::{Backend, Cut, DrawList, Fill, SurfaceOptions, shaders};
+use crate::gpu::{Backend, Cut, DrawList, Fill, Shading, SurfaceOptions, shaders};
 use crate::mesh::{Model, builtin};
 use crate::method::{DepthTags, METHODS, Method, Prepared};
 use crate::tessellation::Spacing;
@@ -121,7 +121,7 @@ impl Drawn {
         let bench = context.bench()?;
         let mut loaded = bench.load(model, prepared, &workarounds, options)?;
         loaded.tags = tags;
-        let frame = loaded.capture(cut, Fill::Solid)?;
+        let frame = loaded.capture(cut, Fill::Solid(Shading::Patch))?;
         let list = loaded.draw_list(cut)?;
         let prepared = loaded.prepared();
         let passes = prepared.passes.iter().enumerate();

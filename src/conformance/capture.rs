@@ -5,13 +5,13 @@ use std::collections::HashMap;
 
 use ash::vk;
 
-use crate::abi::{self, Captured};
+use crate::abi::Captured;
 use crate::conformance::Context;
 use crate::conformance::context::Seen;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, SurfaceOptions, Target,
-    TessellatedSurface, View, Workaround, ring,
+    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, Shading, SurfaceOptions,
+    Target, TessellatedSurface, View, Workaround, ring,
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
@@ -217,7 +217,6 @@ fn from_the_side(reach: f32) -> View {
             [0.0, 0.0, 0.5, 1.0],
         ],
         eye: [0.0, 0.0, 10.0 * reach],
-        shading: abi::SHADING_PATCH,
         displacement: Displacement::default(),
     }
 }
@@ -401,7 +400,7 @@ impl Loaded<'_> {
             prepared,
             self.options.backend,
             cut.spacing,
-            Fill::Solid,
+            Fill::Solid(Shading::Patch),
             self.cull,
             |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.

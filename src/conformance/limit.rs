@@ -455,11 +455,10 @@ fn kind_of(pass: &Pass, vertex: &Captured) -> Kind {
         [true, false] | [false, true] => return Kind::Edge,
         [false, false] => {}
     }
-    let [headers, nodes, points, weights, borders, ..] = &pass.tables[..] else {
+    let [nodes, points, weights, borders, ..] = &pass.tables[..] else {
         return Kind::Node(abi::NODE_REGULAR);
     };
     let plans = Plans {
-        headers: bytemuck::cast_slice(headers),
         nodes: bytemuck::cast_slice(nodes),
         points,
         weights: bytemuck::cast_slice(weights),

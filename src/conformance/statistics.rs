@@ -12,7 +12,7 @@ use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Case, Check, Context, Finding, Group, Status, models};
 use crate::error::Result;
-use crate::gpu::{Cut, Fill};
+use crate::gpu::{Cut, Fill, Shading};
 use crate::mesh::{Model, builtin};
 use crate::method::{METHODS, MethodOptions, Prepared, method_for};
 
@@ -139,7 +139,7 @@ fn predicted(
         let patches = over_patches(&prepared, |_, _| 1) + u32::from(context.is_wrong());
         let evaluations = u64::from(vertices(&prepared, cut));
         let right = [u64::from(patches), evaluations, u64::from(triangles)];
-        let frame = captured(context, model, prepared, cut, Fill::Solid)?;
+        let frame = captured(context, model, prepared, cut, Fill::Solid(Shading::Patch))?;
         let Some(counted) = frame.statistics else {
             return Ok(Finding::skip("the device has no pipelineStatisticsQuery"));
         };

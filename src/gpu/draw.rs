@@ -29,8 +29,6 @@ pub struct View {
     pub clip_from_model: [[f32; 4]; 4],
     /// The eye in local units.
     pub eye: [f32; 3],
-    /// One of `abi::SHADING_...`.
-    pub shading: u32,
     /// A displacement along the normal. Where the limit has several normals, on infinite creases and at cusps, points stay.
     pub displacement: Displacement,
 }
@@ -210,7 +208,6 @@ impl TessellatedSurface {
         abi::Frame {
             view_projection: view.clip_from_model,
             eye: view.eye,
-            shading: view.shading,
             // As the CPU has it, whatever the pass: control shaders compute the points that this level needs.
             level: cut.spacing.clamp(cut.level, max_level),
             flags: flag(

@@ -26,7 +26,7 @@ pub use draw::{Counters, View};
 pub use driver::{Driver, Version};
 pub use features::{Enabled, ExtraFeatures, FeatureChain, OptionalFeatures, Support};
 pub use layout::Layout;
-pub use pipeline::{Fill, Pipelines, Target};
+pub use pipeline::{Fill, Pipelines, Shading, Target};
 pub use points::PointPipeline;
 pub use surface::TessellatedSurface;
 pub use workaround::{Remedy, Workaround, workarounds};

@@ -2,6 +2,7 @@
 
 use ash::vk;
 
+use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::gpu::{Backend, DrawList, Enabled, Layout, failed, shaders};
 use crate::method::Prepared;
@@ -23,12 +24,40 @@ pub struct Target {
     pub compare: vk::CompareOp,
 }
 
+/// What the colours of our own fragment shader mean. A constant of the pipeline: fragments do not pay for what others are shaded by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// A lit surface.
+    #[default]
+    Lit,
+    /// The normal's direction.
+    Normal,
+    /// A colour for each patch.
+    Patch,
+    /// The kind of node that a point was evaluated in.
+    Node,
+    /// The valences of the face's vertices.
+    Valence,
+}
+
+impl Shading {
+    fn code(self) -> u32 {
+        match self {
+            Shading::Lit => abi::SHADING_LIT,
+            Shading::Normal => abi::SHADING_NORMAL,
+            Shading::Patch => abi::SHADING_PATCH,
+            Shading::Node => abi::SHADING_NODE,
+            Shading::Valence => abi::SHADING_VALENCE,
+        }
+    }
+}
+
 /// What becomes of the triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
     /// They are filled.
-    Solid,
-    /// Their edges are drawn, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
+    Solid(Shading),
+    /// Their edges are drawn in one dark colour, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
     Lines,
     /// Their depths alone count: there is no fragment shader and no colour. For pre-passes and shadow maps.
     Depth,
@@ -184,7 +213,7 @@ fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Resu
         ],
     };
     // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours); depths need none.
-    if matches!(fill, Fill::Solid | Fill::Lines) {
+    if matches!(fill, Fill::Solid(_) | Fill::Lines) {
         stages.push((Stage::FRAGMENT, format!("{method}.frag")));
     }
     let found = stages.into_iter().map(|(stage, name)| {
@@ -245,13 +274,22 @@ impl PipelinePlan {
         cache: vk::PipelineCache,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
+        let shading = self.shading().to_ne_bytes();
+        let constants = [vk::SpecializationMapEntry::default().size(shading.len())];
+        let constants = vk::SpecializationInfo::default()
+            .map_entries(&constants)
+            .data(&shading);
         let stages: Vec<vk::PipelineShaderStageCreateInfo> = modules
             .iter()
             .map(|&(stage, module)| {
-                vk::PipelineShaderStageCreateInfo::default()
+                let info = vk::PipelineShaderStageCreateInfo::default()
                     .stage(stage)
                     .module(module)
-                    .name(c"main")
+                    .name(c"main");
+                match stage {
+                    vk::ShaderStageFlags::FRAGMENT => info.specialization_info(&constants),
+                    _ => info,
+                }
             })
             .collect();
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
@@ -301,6 +339,14 @@ impl PipelinePlan {
         let made = unsafe { device.create_graphics_pipelines(cache, &[info], None) };
         made.map(|pipelines| pipelines[0])
             .map_err(|(_, code)| failed("vkCreateGraphicsPipelines")(code))
+    }
+
+    /// The constant of the fragment shader.
+    fn shading(&self) -> u32 {
+        match self.fill {
+            Fill::Solid(shading) => shading.code(),
+            Fill::Lines | Fill::Depth | Fill::Discard => abi::SHADING_LINES,
+        }
     }
 
     fn rasterization(&self) -> vk::PipelineRasterizationStateCreateInfo<'static> {

@@ -92,14 +92,7 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
         .map(|part| surroundings(topology, part))
         .collect();
     let mut regular = pass("quadtree_regular", 16, twin::regular, options);
-    let mut irregular = pass(
-        "quadtree",
-        abi::CONTROL_INVOCATIONS,
-        twin::irregular,
-        options,
-    );
-    let mut catalogue = Catalogue::default();
-    let mut rings = Vec::new();
+    let (mut rings, mut long_rings) = (Vec::new(), Vec::new());
     for part in found {
         match part {
             Surroundings::Regular(part, vertices) => {
@@ -107,56 +100,95 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
                 add(&mut regular, model, part, 0, &vertices).flags |= flags;
             }
             Surroundings::Irregular(part, ring) => {
-                let plan = catalogue.number(ring.configuration.clone());
-                rings.push(Irregular { part, ring, plan });
+                let fits = ring.vertices.len() <= abi::CONTROL_INVOCATIONS as usize;
+                let rings = if fits { &mut rings } else { &mut long_rings };
+                rings.push((part, ring));
             }
         }
     }
+    let mut plans = PlanStatistics {
+        regular: regular.patches.len(),
+        vertex_bytes: size_of::<Vec3>() * model.mesh().vertex_count(),
+        index_bytes: size_of_val(&regular.controls[..]),
+        ..PlanStatistics::default()
+    };
+    let short = irregular(model, "quadtree", rings, options, &mut plans);
+    let long = irregular(model, "quadtree_long", long_rings, options, &mut plans);
+    plans.build_seconds = started.elapsed().as_secs_f64();
+    Ok(Prepared {
+        plans: Some(plans),
+        ..Prepared::of([regular, short, long])
+    })
+}
+
+/// The pass of the patches that need plans. Those with long rings have shaders of their own, which need not pay for others.
+fn irregular(
+    model: &Model,
+    shader: &'static str,
+    rings: Vec<(Part, Ring)>,
+    options: PlanOptions,
+    statistics: &mut PlanStatistics,
+) -> Pass {
+    let topology = model.topology();
+    let mut pass = pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options);
+    let mut catalogue = Catalogue::default();
+    let mut number = |(part, ring): (Part, Ring)| {
+        let plan = catalogue.number(ring.configuration.clone());
+        Irregular { part, ring, plan }
+    };
+    let patches: Vec<Irregular> = rings.into_iter().map(&mut number).collect();
     let mut packed = PackedPlans::default();
     let plans = catalogue.build(options);
     plans.iter().for_each(|plan| packed.push(plan));
-    let nodes = NODE_KINDS.map(|kind| packed.count(kind));
-    let quadtree_bytes = packed.quadtree_bytes();
-    let borders = Borders::new(topology, &rings, &mut packed, options);
-    for (patch, &border) in rings.iter().zip(&borders.numbers) {
-        let turn = patch.turn(topology);
-        add(
-            &mut irregular,
-            model,
-            patch.part,
-            turn,
-            &patch.ring.vertices,
-        )
-        .plan = border;
+    statistics.plans += plans.len();
+    statistics.stencils += plans.iter().map(|plan| plan.stencils.len()).sum::<usize>();
+    for (count, kind) in statistics.nodes.iter_mut().zip(NODE_KINDS) {
+        *count += packed.count(kind);
     }
-    let records = with_places(&mut irregular, &borders);
-    irregular.scratch_points = records.iter().map(|border| border.counts).collect();
-    irregular.tables = vec![
-        bytemuck::cast_slice(&packed.headers).to_vec(),
+    let inside_bytes = packed.quadtree_bytes();
+    let borders = Borders::new(topology, &patches, &mut packed, options);
+    for (patch, &border) in patches.iter().zip(&borders.numbers) {
+        let turn = patch.turn(topology);
+        let vertices = &patch.ring.vertices;
+        add(&mut pass, model, patch.part, turn, vertices).plan = border;
+    }
+    let records = with_places(&mut pass, &borders);
+    pass.scratch_points = records.iter().map(slot_sizes).collect();
+    statistics.edge_plans += borders.edge_plans;
+    statistics.vertex_plans += borders.vertex_plans;
+    statistics.quadtree_bytes += inside_bytes;
+    statistics.border_bytes += packed.quadtree_bytes() - inside_bytes + size_of_val(&records[..]);
+    statistics.stencil_bytes += packed.stencil_bytes();
+    statistics.add_points(&pass);
+    pass.tables = vec![
         bytemuck::cast_slice(&packed.nodes).to_vec(),
-        packed.points.clone(),
+        packed.points,
         bytemuck::cast_slice(&packed.weights).to_vec(),
         bytemuck::cast_slice(&records).to_vec(),
     ];
-    let statistics = PlanStatistics {
-        plans: plans.len(),
-        edge_plans: borders.edge_plans,
-        vertex_plans: borders.vertex_plans,
-        nodes,
-        stencils: plans.iter().map(|plan| plan.stencils.len()).sum(),
-        quadtree_bytes,
-        border_bytes: packed.quadtree_bytes() - quadtree_bytes + size_of_val(&records[..]),
-        stencil_bytes: packed.stencil_bytes(),
-        ..statistics(model, &regular, &irregular)
-    };
-    let plans = PlanStatistics {
-        build_seconds: started.elapsed().as_secs_f64(),
-        ..statistics
-    };
-    Ok(Prepared {
-        plans: Some(plans),
-        ..Prepared::of([regular, irregular])
-    })
+    pass
+}
+
+/// The points of a patch's slot at each level.
+fn slot_sizes(border: &abi::Border) -> [u32; abi::HIGHEST_LEVEL as usize + 1] {
+    border.ends.map(|[.., last]| last)
+}
+
+impl PlanStatistics {
+    fn add_points(&mut self, pass: &Pass) {
+        let points = |level: u32| -> u64 {
+            let patches = 0..pass.patches.len();
+            patches
+                .map(|patch| u64::from(pass.points(patch, level)))
+                .sum()
+        };
+        self.irregular += pass.patches.len();
+        self.index_bytes += size_of_val(&pass.controls[..]);
+        self.scratch_worst_case_bytes += 16 * points(pass.max_level) as usize;
+        for (sum, level) in self.control_points.iter_mut().zip(0..) {
+            *sum += points(level);
+        }
+    }
 }
 
 /// Puts the borders' lists behind the lists of control vertices, and the borders right.
@@ -240,21 +272,3 @@ const NODE_KINDS: [NodeKind; 6] = [
     NodeKind::Terminal,
     NodeKind::Extraordinary,
 ];
-
-/// What the passes tell.
-fn statistics(model: &Model, regular: &Pass, irregular: &Pass) -> PlanStatistics {
-    let points = |level: usize| -> u64 {
-        (0..irregular.patches.len())
-            .map(|patch| u64::from(irregular.points(patch, level as u32)))
-            .sum()
-    };
-    PlanStatistics {
-        regular: regular.patches.len(),
-        irregular: irregular.patches.len(),
-        vertex_bytes: size_of::<Vec3>() * model.mesh().vertex_count(),
-        index_bytes: size_of_val(&regular.controls[..]) + size_of_val(&irregular.controls[..]),
-        scratch_worst_case_bytes: 16 * points(irregular.max_level as usize) as usize,
-        control_points: std::array::from_fn(points),
-        ..PlanStatistics::default()
-    }
-}

@@ -4,18 +4,50 @@ use crate::abi;
 use crate::plan::builder::Plan;
 use crate::plan::tree::{Node, NodeKind};
 
+/// Where a packed plan's parts begin, and how many stencils each level needs.
+#[derive(Clone, Copy, Debug)]
+pub struct PlanHeader {
+    /// Vertices of the 1-ring.
+    pub ring_size: u32,
+    /// Where its weights begin, `ring_size` a stencil.
+    pub weights: u32,
+    /// Its root.
+    pub root: u32,
+    /// Its deepest level.
+    pub max_level: u32,
+    /// The number of stencils needed at level 0..=11; beyond the deepest level as there. An edge beside an n-gon is one level deeper than
+    /// the patches that have half of it.
+    pub counts: [u32; abi::HIGHEST_LEVEL as usize + 2],
+}
+
+/// The points of a terminal node's children, of all levels: each has its own list, so that a row of points is two words wherever it is.
+fn children(levels: &[[u32; 25]]) -> Vec<u32> {
+    let places = (0..4).flat_map(|child| {
+        let first = child % 2 + 5 * (child / 2);
+        (0..16).map(move |point| first + point % 4 + 5 * (point / 4))
+    });
+    let places: Vec<usize> = places.collect();
+    let level = |grid: &[u32; 25]| {
+        places
+            .iter()
+            .map(|&place| grid[place])
+            .collect::<Vec<u32>>()
+    };
+    levels.iter().flat_map(level).collect()
+}
+
 /// Plans packed one after another.
 #[derive(Clone, Debug, Default)]
 pub struct PackedPlans {
-    /// One a plan.
-    pub headers: Vec<abi::PlanHeader>,
+    /// One a plan; patches have copies of what their shaders need of these.
+    pub headers: Vec<PlanHeader>,
     /// The quadtrees' nodes.
     pub nodes: Vec<abi::Node>,
-    /// The nodes' points: numbers of stencils, two 16-bit halves a word, the lower first.
+    /// The nodes' points: numbers of stencils, sixteen a B-spline, two 16-bit halves a word, the lower first.
     pub points: Vec<u32>,
     /// The stencils' weights, and behind those of each plan its tangents near corners.
     pub weights: Vec<f32>,
-    /// For each plan the number, among its stencils, of the first of two tangents near each corner; [`abi::NO_PLAN`] without any.
+    /// For each plan the number, among its stencils, of the first of two tangents near each corner; [`abi::NO_TANGENTS`] without any.
     pub nearby: Vec<[u32; 4]>,
 }
 
@@ -30,7 +62,7 @@ impl PackedPlans {
             "points are numbered in 16 bits"
         );
         let counts = plan.level_counts();
-        self.headers.push(abi::PlanHeader {
+        self.headers.push(PlanHeader {
             ring_size: plan.ring_size as u32,
             weights: self.weights.len() as u32,
             root: self.nodes.len() as u32,
@@ -52,7 +84,7 @@ impl PackedPlans {
             let number = if tangents.is_some() {
                 next
             } else {
-                abi::NO_PLAN
+                abi::NO_TANGENTS
             };
             next += if tangents.is_some() { 2 } else { 0 };
             number
@@ -82,7 +114,7 @@ impl PackedPlans {
             Node::Terminal { corner, levels } => (
                 *corner,
                 levels.len() as u32,
-                self.list(&levels.concat()),
+                self.list(&children(levels)),
                 0.0,
             ),
             Node::Curve {
@@ -113,7 +145,6 @@ impl PackedPlans {
     /// The plans as the walk reads them.
     pub fn view(&self) -> Plans<'_> {
         Plans {
-            headers: &self.headers,
             nodes: &self.nodes,
             points: &self.points,
             weights: &self.weights,
@@ -128,11 +159,9 @@ impl PackedPlans {
             .count()
     }
 
-    /// The bytes of the quadtrees: headers, nodes and their points.
+    /// The bytes of the quadtrees: nodes and their points.
     pub fn quadtree_bytes(&self) -> usize {
-        size_of_val(&self.headers[..])
-            + size_of_val(&self.nodes[..])
-            + size_of_val(&self.points[..])
+        size_of_val(&self.nodes[..]) + size_of_val(&self.points[..])
     }
 
     /// The bytes of the stencils.
@@ -144,8 +173,6 @@ impl PackedPlans {
 /// Packed plans, borrowed.
 #[derive(Clone, Copy, Debug)]
 pub struct Plans<'a> {
-    /// As in [`PackedPlans`].
-    pub headers: &'a [abi::PlanHeader],
     /// As in [`PackedPlans`].
     pub nodes: &'a [abi::Node],
     /// As in [`PackedPlans`].

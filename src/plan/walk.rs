@@ -9,10 +9,8 @@ use crate::plan::packing::Plans;
 /// Where a walk ends: in a B-spline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leaf {
-    /// Where its points begin in the list.
+    /// Where its sixteen points begin in the list, number x + 4 y.
     pub points: u32,
-    /// From one row of points to the next: 4, or 5 in a terminal node.
-    pub stride: u32,
     /// Where in it.
     pub uv: Vec2,
     /// By how much its derivatives are shorter than the patch's: 2^depth.
@@ -55,7 +53,6 @@ fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {
         abi::NODE_TERMINAL => terminal(node.points, place, levels, uv, scale),
         _ => Leaf {
             points: node.points,
-            stride: 4,
             uv,
             scale,
             edge: place,
@@ -74,7 +71,6 @@ fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf
     if level >= levels {
         return Leaf {
             points: 0,
-            stride: 4,
             uv: Vec2::ZERO,
             scale,
             edge: corner,
@@ -88,8 +84,7 @@ fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf
     let (x, y) = (far_u != at_u, far_v != at_v);
     let local = Vec2::new(mirror(local.x, at_u), mirror(local.y, at_v));
     Leaf {
-        points: points + abi::TERMINAL_POINTS * level + x as u32 + 5 * y as u32,
-        stride: 5,
+        points: points + abi::TERMINAL_POINTS * level + 16 * (x as u32 + 2 * y as u32),
         uv: 2.0 * local - Vec2::new(f32::from(x as u8), f32::from(y as u8)),
         scale: scale * grown * 2.0,
         edge: 0,

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
 use ash::vk;
-use hullform::abi::{self, Captured};
+use hullform::abi::Captured;
 use hullform::gpu::{
     Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, PointPipeline,
     SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
@@ -174,7 +174,7 @@ impl Gpu {
     ) -> T {
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
         let fill_name = match fill {
-            Fill::Solid => "solid",
+            Fill::Solid(_) => "solid",
             Fill::Lines => "lines",
             Fill::Depth => "depth",
             Fill::Discard => "discard",
@@ -435,7 +435,6 @@ impl Loaded<'_> {
                 [0.0, 0.0, 0.5, 1.0],
             ],
             eye: [0.0, 0.0, 10.0 * self.reach],
-            shading: abi::SHADING_PATCH,
             displacement: self.displacement,
         }
     }

@@ -7,7 +7,7 @@ use ash::vk;
 use glam::Vec3;
 use hullform::conformance::backends::Drawn;
 use hullform::conformance::{Context, Settings};
-use hullform::gpu::{Backend, Cut, Fill, SurfaceOptions};
+use hullform::gpu::{Backend, Cut, Fill, Shading, SurfaceOptions};
 use hullform::mesh::{Model, Scheme, builtin};
 use hullform::method::{DepthTags, METHODS, Method, Prepared};
 use hullform::plan::PlanOptions;
@@ -70,7 +70,9 @@ fn patterns_are_n_times_4_to_the_depth_triangles() {
                     continue;
                 }
                 let mut loaded = load(&gpu, &model, prepared, backend, cut);
-                let frame = loaded.capture(cut, Fill::Solid).expect("it is drawn");
+                let frame = loaded
+                    .capture(cut, Fill::Solid(Shading::Patch))
+                    .expect("it is drawn");
                 let Some([_, _, triangles]) = frame.statistics else {
                     return;
                 };
@@ -91,7 +93,9 @@ fn pictures_of_all_backends_are_alike() {
     for (method, prepared) in drawable(&model, Backend::Geometry) {
         let pictures = Backend::ALL.map(|backend| {
             let mut loaded = load(&gpu, &model, prepared.clone(), backend, cut);
-            loaded.capture(cut, Fill::Solid).expect("it is drawn");
+            loaded
+                .capture(cut, Fill::Solid(Shading::Patch))
+                .expect("it is drawn");
             loaded.pixels()
         });
         for other in &pictures[1..] {
@@ -126,7 +130,9 @@ fn the_front_is_where_faces_are_counter_clockwise() {
                 .map(|cull| {
                     gpu.cull.set(cull);
                     let mut loaded = load(&gpu, &model, prepared.clone(), backend, cut);
-                    loaded.capture(cut, Fill::Solid).expect("it is drawn");
+                    loaded
+                        .capture(cut, Fill::Solid(Shading::Patch))
+                        .expect("it is drawn");
                     loaded.pixels()
                 });
                 let differing = |a: &[u8], b: &[u8]| {

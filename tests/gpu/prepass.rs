@@ -1,7 +1,7 @@
 //! Passes over one another: whatever the fragment shader, positions are the same, so depths may be compared with EQUAL.
 
 use ash::vk;
-use hullform::gpu::{Backend, Fill, SurfaceOptions};
+use hullform::gpu::{Backend, Fill, Shading, SurfaceOptions};
 use hullform::method::{Displacement, METHODS};
 use hullform::tessellation::Spacing;
 
@@ -27,8 +27,8 @@ fn check(gpu: &Gpu, method: &str, backend: Backend, spacing: Spacing) {
     };
     let workarounds = &gpu.device.info().workarounds;
     let build = |fill, compare| gpu.build(&prepared, backend, spacing, fill, compare);
-    let plain = build(Fill::Solid, vk::CompareOp::LESS_OR_EQUAL);
-    let equal = build(Fill::Solid, vk::CompareOp::EQUAL);
+    let plain = build(Fill::Solid(Shading::Patch), vk::CompareOp::LESS_OR_EQUAL);
+    let equal = build(Fill::Solid(Shading::Patch), vk::CompareOp::EQUAL);
     let depth = build(Fill::Depth, vk::CompareOp::LESS_OR_EQUAL);
     let mut loaded = match gpu.load(&model, prepared.clone(), workarounds, options) {
         Ok(loaded) => loaded,

@@ -1,6 +1,6 @@
 //! Many patches at high levels, where drivers have their limits: with the known faults worked around, all arrive.
 
-use hullform::gpu::{Cut, Fill};
+use hullform::gpu::{Cut, Fill, Shading};
 use hullform::tessellation::Spacing;
 
 use crate::common::gpu::{Gpu, capturing, cut, prepare};
@@ -15,7 +15,9 @@ fn assert_complete(gpu: &Gpu, name: &str, method: &str, cut: Cut) {
     let workarounds = &gpu.device.info().workarounds;
     let loaded = gpu.load(&model, prepared, workarounds, options);
     let mut loaded = loaded.expect("the ring holds a patch");
-    let frame = loaded.capture(cut, Fill::Solid).expect("it is drawn");
+    let frame = loaded
+        .capture(cut, Fill::Solid(Shading::Patch))
+        .expect("it is drawn");
     assert_eq!(frame.counters.overflows, 0);
     for (pass, vertices) in loaded.prepared().passes.iter().zip(&frame.passes) {
         let mut patches = vertices.chunk_by(|a, b| a.patch_number == b.patch_number);

@@ -1,7 +1,7 @@
 //! What the driver counts, against what was predicted.
 
 use hullform::abi;
-use hullform::gpu::{Cut, Fill};
+use hullform::gpu::{Cut, Fill, Shading};
 use hullform::mesh::{Model, builtin};
 use hullform::method::{METHODS, Prepared};
 
@@ -25,7 +25,9 @@ fn patches(model: &Model, prepared: &Prepared) -> u64 {
 
 /// Draws at a cut and compares patches, evaluations, triangles and points with their prediction.
 fn assert_predicted(name: &str, model: &Model, loaded: &mut Loaded<'_>, cut: Cut) {
-    let frame = loaded.capture(cut, Fill::Solid).expect("it is drawn");
+    let frame = loaded
+        .capture(cut, Fill::Solid(Shading::Patch))
+        .expect("it is drawn");
     let prepared = loaded.prepared();
     let points = over_patches(prepared, |pass, patch| {
         cut.points(&prepared.passes[pass], patch)
@@ -89,7 +91,7 @@ fn a_mesh_of_regular_faces_needs_no_ring() {
     };
     let loaded = gpu.load(&model, prepared, &gpu.device.info().workarounds, options);
     let mut loaded = loaded.expect("no patch needs the ring");
-    let frame = loaded.capture(cut(8.0, SPACINGS[0]), Fill::Solid);
+    let frame = loaded.capture(cut(8.0, SPACINGS[0]), Fill::Solid(Shading::Patch));
     let frame = frame.expect("it is drawn");
     assert_eq!(frame.counters, Default::default());
     assert_eq!(frame.passes[0].len(), 40 * 81);

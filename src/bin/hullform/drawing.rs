@@ -12,7 +12,7 @@ use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
 use hullform::method::{DepthTags, Displacement, Prepared};
 use hullform::tessellation::Spacing;
-use hullform::{Error, Result, abi};
+use hullform::{Error, Result};
 
 use crate::adaptive::Seen;
 use crate::approximation;
@@ -210,7 +210,6 @@ impl<'a> Drawing<'a> {
         View {
             clip_from_model: [[0.0; 4]; 4],
             eye: [0.0; 3],
-            shading: abi::SHADING_LIT,
             displacement: Displacement::default(),
         }
     }

@@ -12,7 +12,7 @@ use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
 use hullform::method::{DepthTags, Displacement, Prepared};
-use hullform::{Error, Result, abi};
+use hullform::{Error, Result};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -271,7 +271,8 @@ fn draw_with(
     drawing.upload(scene.points)?;
     let list = drawing.draw_list(cut, tags.as_ref())?;
     let started = Instant::now();
-    let mut pipelines = vec![drawing.pipelines(target, cut.spacing, Fill::Solid)?];
+    let solid = Fill::Solid(scene.shading.into());
+    let mut pipelines = vec![drawing.pipelines(target, cut.spacing, solid)?];
     if scene.wireframe {
         pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
     }
@@ -316,10 +317,6 @@ fn draw_frame(
             query.cmd_end(cmd);
         }
         if let Some(lines) = pipelines.get(1) {
-            let seen = gpu::View {
-                shading: abi::SHADING_LINES,
-                ..seen
-            };
             let again = list.round(1)?;
             drawn = drawn.and_then(|()| drawing.cmd_draw(cmd, lines, &seen, again));
         }
@@ -392,7 +389,6 @@ fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
     gpu::View {
         clip_from_model: view.clip_from_model.to_cols_array_2d(),
         eye: view.eye.to_array(),
-        shading: scene.shading.code(),
         displacement: scene.displacement,
     }
 }
@@ -406,14 +402,14 @@ fn bumps(model: &Model, share: f32) -> Displacement {
     }
 }
 
-impl Shading {
-    fn code(self) -> u32 {
-        match self {
-            Shading::Lit => abi::SHADING_LIT,
-            Shading::Normal => abi::SHADING_NORMAL,
-            Shading::Patch => abi::SHADING_PATCH,
-            Shading::Node => abi::SHADING_NODE,
-            Shading::Valence => abi::SHADING_VALENCE,
+impl From<Shading> for gpu::Shading {
+    fn from(shading: Shading) -> gpu::Shading {
+        match shading {
+            Shading::Lit => gpu::Shading::Lit,
+            Shading::Normal => gpu::Shading::Normal,
+            Shading::Patch => gpu::Shading::Patch,
+            Shading::Node => gpu::Shading::Node,
+            Shading::Valence => gpu::Shading::Valence,
         }
     }
 }

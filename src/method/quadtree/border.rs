@@ -18,6 +18,13 @@ use crate::plan::{
     VertexPlan,
 };
 
+/// The levels that a patch can be drawn at.
+const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
+/// What a patch is evaluated by.
+const USES: usize = abi::USES as usize;
+/// An edge of which the patch has half.
+const HALVES: u32 = abi::USE_FIRST_HALF | abi::USE_SECOND_HALF;
+
 /// An irregular patch: its part, its ring, and the number of its plan.
 pub struct Irregular {
     pub part: Part,
@@ -307,14 +314,26 @@ fn side_flags(side: Side, creased: bool) -> u32 {
             .map_or(abi::USE_CUSP, |pair| pair << abi::USE_SIDE_SHIFT)
 }
 
+/// Where in a slot the points of each plan end, at each level: there is a head for each use, then the plain points, then those of the plans.
+fn ends(plain: u32, counts: &[[u32; LEVELS]; USES]) -> [[u32; USES]; LEVELS] {
+    std::array::from_fn(|level| {
+        let mut end = abi::USES + plain;
+        counts.map(|counts| {
+            end += counts[level];
+            end
+        })
+    })
+}
+
 impl Builder<'_> {
     fn border(&mut self, patch: &Irregular) -> abi::Border {
         let (topology, turn) = (self.topology, patch.turn(self.topology));
         let ring = (0..).zip(&patch.ring.vertices);
         let ring: FxHashMap<u32, u32> = ring.map(|(place, &vertex)| (vertex, place)).collect();
         let mut border = abi::Border::default();
-        border.plans[0] = patch.plan;
-        border.roots[0] = self.packed.headers[patch.plan as usize].root;
+        let mut counts = [[0; LEVELS]; USES];
+        let [inside @ .., _] = self.plan(&mut border, 0, patch.plan);
+        counts[0] = inside;
         border.nearby = self.packed.nearby[patch.plan as usize];
         let mut places = Vec::new();
         let mut plain = Plain {
@@ -328,16 +347,14 @@ impl Builder<'_> {
                     let flags = flags ^ self.line_flags(patch.part.face, corner, line, ring, *plan);
                     let flipped = 2 * (flags & abi::USE_FLIPPED);
                     border.flags[number] = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
-                    self.planned(
-                        &mut border,
-                        number,
-                        self.lines.first + *plan as u32,
-                        ring,
-                        &plain,
-                    );
+                    border.rings[number] = self.places(ring, &plain);
+                    let plan = self.lines.first + *plan as u32;
+                    let found = self.plan(&mut border, number, plan);
+                    // Half of an edge needs what is one level deeper in the whole.
+                    let deeper = usize::from(flags & HALVES != 0);
+                    counts[number] = std::array::from_fn(|level| found[level + deeper]);
                 }
                 None => {
-                    border.plans[number] = abi::NO_PLAN;
                     border.flags[number] = edge << abi::USE_TURN_SHIFT;
                     let vertices = edge_rows(topology, patch.part.face, corner);
                     border.roots[number] =
@@ -347,7 +364,6 @@ impl Builder<'_> {
         }
         for (corner, point) in (0..).zip(points(topology, patch.part, turn)) {
             let number = 5 + corner as usize;
-            border.plans[number] = abi::NO_PLAN;
             let Some(point) = point else { continue };
             match self.vertices.known.get(&point) {
                 Some((ring, plan)) => {
@@ -358,13 +374,10 @@ impl Builder<'_> {
                         Point::Centre(_) => planned.sides[0],
                     };
                     border.flags[number] = side_flags(side, planned.planes > 1);
-                    self.planned(
-                        &mut border,
-                        number,
-                        self.vertices.first + *plan as u32,
-                        ring,
-                        &plain,
-                    );
+                    border.rings[number] = self.places(ring, &plain);
+                    self.plan(&mut border, number, self.vertices.first + *plan as u32);
+                    // Position and normal.
+                    counts[number] = [2; LEVELS];
                 }
                 None => {
                     let face_corner = (turn + corner) % 4;
@@ -379,7 +392,7 @@ impl Builder<'_> {
         }
         border.plain_count = places.len() as u32;
         border.plain = self.list(places);
-        border.counts = self.counts(&border);
+        border.ends = ends(border.plain_count, &counts);
         border
     }
 
@@ -394,20 +407,21 @@ impl Builder<'_> {
         side << abi::USE_SIDE_SHIFT | creased | if flipped { abi::USE_FLIPPED } else { 0 }
     }
 
-    fn planned(
-        &mut self,
-        border: &mut abi::Border,
-        number: usize,
-        plan: u32,
-        ring: &Ring,
-        plain: &Plain<'_>,
-    ) {
-        border.plans[number] = plan;
+    /// Gives a use its plan; tells how many stencils each level needs.
+    fn plan(&self, border: &mut abi::Border, number: usize, plan: u32) -> [u32; LEVELS + 1] {
+        let header = &self.packed.headers[plan as usize];
+        border.sizes[number] = header.ring_size;
+        border.weights[number] = header.weights;
         if border.flags[number] & abi::USE_LIMIT == 0 {
-            border.roots[number] = self.packed.headers[plan as usize].root;
+            border.roots[number] = header.root;
         }
+        header.counts
+    }
+
+    /// Where it stands which vertices of the patch's ring a plan's ring has.
+    fn places(&mut self, ring: &Ring, plain: &Plain<'_>) -> u32 {
         let places = ring.vertices.iter().map(|vertex| plain.ring[vertex]);
-        border.rings[number] = self.list(places.collect());
+        self.list(places.collect())
     }
 
     /// Where a list of places begins.
@@ -426,25 +440,6 @@ impl Builder<'_> {
             .nodes
             .entry(points)
             .or_insert_with(|| packed.push_bspline(&points))
-    }
-
-    /// The points of the slot: a head for each use, the plain points, then those of the plans.
-    fn counts(&self, border: &abi::Border) -> [u32; abi::HIGHEST_LEVEL as usize + 1] {
-        std::array::from_fn(|level| {
-            let planned =
-                (0..abi::USES as usize).filter(|&number| border.plans[number] != abi::NO_PLAN);
-            let points = planned.map(|number| {
-                let halves = abi::USE_FIRST_HALF | abi::USE_SECOND_HALF;
-                let deeper = usize::from(border.flags[number] & halves != 0);
-                let level = level + deeper;
-                match border.flags[number] & abi::USE_LIMIT {
-                    0 => self.packed.headers[border.plans[number] as usize].counts[level],
-                    // Position and normal.
-                    _ => 2,
-                }
-            });
-            abi::USES + border.plain_count + points.sum::<u32>()
-        })
     }
 
     fn number(&mut self, border: abi::Border) -> u32 {

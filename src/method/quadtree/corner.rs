@@ -47,7 +47,7 @@ impl Use<'_> {
     /// The normal at a corner of the patch.
     pub(super) fn vertex_normal(&self, vertices: &[Vec3], flags: u32) -> Vec3 {
         let nearby = match self.border.nearby[self.number - 5] {
-            abi::NO_PLAN => None,
+            abi::NO_TANGENTS => None,
             number => Some(self.of(0).tangents(vertices, number).normal()),
         };
         if flags & abi::USE_CUSP != 0 {
@@ -81,8 +81,7 @@ impl Use<'_> {
     /// The pair of tangents whose first is stencil `number` of the use's plan.
     fn tangents(&self, vertices: &[Vec3], number: u32) -> Tangents {
         let ring = self.ring(vertices);
-        let header = self.plans.headers[self.border.plans[self.number] as usize];
-        let first = (header.weights + number * header.ring_size) as usize;
+        let first = self.stencil(number);
         tangents(&ring, &self.plans.weights[first..first + 2 * ring.len()])
     }
 }

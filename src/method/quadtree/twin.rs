@@ -111,7 +111,7 @@ pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface
 /// vertex: tangents deep in the tree are differences of small numbers then, instead of small differences of large ones.
 pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let plans = plans(pass);
-    let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[4]);
+    let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[3]);
     let abi::Patch {
         controls,
         plan,
@@ -136,9 +136,10 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
     };
     let flags = border.flags[number as usize];
     let ring = one_use.ring(&given.vertices);
-    let origin = match border.plans[number as usize] {
-        abi::NO_PLAN => Vec3::ZERO,
-        _ => ring[0],
+    let origin = if one_use.has_plan() {
+        ring[0]
+    } else {
+        Vec3::ZERO
     };
     let local: Vec<Vec3> = ring.iter().map(|&point| point - origin).collect();
     let side = flags >> abi::USE_SIDE_SHIFT;
@@ -193,20 +194,22 @@ pub(super) struct Use<'a> {
 }
 
 impl Use<'_> {
+    /// Whether it has a plan, or control vertices themselves.
+    fn has_plan(&self) -> bool {
+        self.border.sizes[self.number] > 0
+    }
+
     /// Where its control vertices are.
     pub(super) fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
         let vertex = |place: u32| self.pass.controls[(self.controls + place) as usize];
         let place = |start: u32, i: u32| self.pass.controls[(start + i) as usize];
-        let plan = self.border.plans[self.number];
-        let vertices: Vec<u32> = match plan {
-            abi::NO_PLAN => (0..self.border.plain_count)
+        let vertices: Vec<u32> = match (self.border.sizes[self.number], self.number) {
+            (0, _) => (0..self.border.plain_count)
                 .map(|i| vertex(place(self.border.plain, i)))
                 .collect(),
-            _ => (0..self.plans.headers[plan as usize].ring_size)
-                .map(|i| match self.number {
-                    0 => vertex(i),
-                    number => vertex(place(self.border.rings[number], i)),
-                })
+            (size, 0) => (0..size).map(vertex).collect(),
+            (size, number) => (0..size)
+                .map(|i| vertex(place(self.border.rings[number], i)))
                 .collect(),
         };
         vertices
@@ -215,24 +218,23 @@ impl Use<'_> {
             .collect()
     }
 
+    /// Where the weights of stencil `number` of its plan begin.
+    pub(super) fn stencil(&self, number: u32) -> usize {
+        (self.border.weights[self.number] + number * self.border.sizes[self.number]) as usize
+    }
+
     /// Point `number` of its slot.
     fn point(&self, ring: &[Vec3], number: u32) -> Vec3 {
-        let plan = self.border.plans[self.number];
-        if plan == abi::NO_PLAN {
+        if !self.has_plan() {
             return ring[number as usize];
         }
-        let header = self.plans.headers[plan as usize];
-        weighted_sum(
-            ring,
-            &self.plans.weights[(header.weights + number * header.ring_size) as usize..],
-        )
+        weighted_sum(ring, &self.plans.weights[self.stencil(number)..])
     }
 
     fn evaluate(&self, ring: &[Vec3], uv: Vec2, side: u32) -> Surface {
         let leaf = walk(self.plans, self.border.roots[self.number], uv);
         let Leaf {
             points,
-            stride,
             uv,
             scale,
             edge,
@@ -245,10 +247,7 @@ impl Use<'_> {
         }
         let points = points + 16 * side;
         bspline(u, v, scale, |x, y| {
-            self.point(
-                ring,
-                self.plans.point(points + x as u32 + stride * y as u32),
-            )
+            self.point(ring, self.plans.point(points + x as u32 + 4 * y as u32))
         })
     }
 }
@@ -314,9 +313,8 @@ fn reversed(basis: Basis<f32>) -> Basis<f32> {
 
 fn plans(pass: &Pass) -> Plans<'_> {
     Plans {
-        headers: bytemuck::cast_slice(&pass.tables[0]),
-        nodes: bytemuck::cast_slice(&pass.tables[1]),
-        points: &pass.tables[2],
-        weights: bytemuck::cast_slice(&pass.tables[3]),
+        nodes: bytemuck::cast_slice(&pass.tables[0]),
+        points: &pass.tables[1],
+        weights: bytemuck::cast_slice(&pass.tables[2]),
     }
 }

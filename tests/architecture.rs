@@ -218,7 +218,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 30] = [
+const NAMED: [(&str, &str, &str); 32] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -248,6 +248,8 @@ const NAMED: [(&str, &str, &str); 30] = [
     ("tests/pictures.rs", "quadtree", WORDS),
     ("tests/pictures.rs", "flat", WORDS),
     ("tests/pictures.rs", "pn", WORDS),
+    ("tests/cli_bench.rs", "quadtree", WORDS),
+    ("tests/cli_bench.rs", "flat", WORDS),
     ("tests/planar.rs", "quadtree", PLANS),
 ];
 

@@ -27,9 +27,17 @@ impl Cut {
 
     /// The points that a patch needs in the ring.
     pub fn points(&self, pass: &Pass, patch: usize) -> u32 {
-        // As the control shader has it: beside an n-gon the level may be more than what a plan of one level serves.
-        let level = required_level(&self.levels(pass, patch), abi::HIGHEST_LEVEL);
-        pass.points(patch, level)
+        pass.points(patch, self.plan_level(pass, patch))
+    }
+
+    /// The products of a weight and a vertex that these points take.
+    pub fn products(&self, pass: &Pass, patch: usize) -> u64 {
+        pass.products(patch, self.plan_level(pass, patch))
+    }
+
+    /// As the control shader has it: beside an n-gon the level may be more than what a plan of one level serves.
+    fn plan_level(&self, pass: &Pass, patch: usize) -> u32 {
+        required_level(&self.levels(pass, patch), abi::HIGHEST_LEVEL)
     }
 
     /// The vertices that the tessellator makes of a patch.

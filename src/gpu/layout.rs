@@ -26,6 +26,9 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// How many storage buffers each stage sees.
+    pub const STORAGE_BUFFERS: u32 = BINDINGS;
+
     /// Makes the layouts: storage buffers at every binding of `abi`, and an [`abi::Frame`] of push constants.
     ///
     /// # Safety

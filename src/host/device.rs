@@ -134,6 +134,16 @@ impl Device {
         allocator.unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Whether it is the CPU itself.
+    pub fn is_software(&self) -> bool {
+        self.0.info.kind == vk::PhysicalDeviceType::CPU
+    }
+
+    /// Bytes of its memory that are in use, by all that was made from [`allocator`](Device::allocator).
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocator().generate_report().total_allocated_bytes
+    }
+
     /// Whether a submission ran out of patience, or it cannot be known whether it has ended. What it used may still be in use and must not be
     /// destroyed.
     pub fn is_hung(&self) -> bool {

@@ -7,6 +7,7 @@ mod instance;
 mod offscreen;
 mod render_pass;
 mod statistics;
+mod timestamps;
 
 pub use choice::{DeviceInfo, devices};
 pub use coloured::{ColouredTriangles, ColouredVertex};
@@ -14,3 +15,4 @@ pub use device::Device;
 pub use instance::Instance;
 pub use offscreen::{Encoding, OffscreenTarget};
 pub use statistics::StatisticsQuery;
+pub use timestamps::TimestampQuery;

@@ -298,6 +298,8 @@ pub struct Pass {
     pub tables: Vec<Vec<u32>>,
     /// The points that a patch needs in the scratch ring at levels 0..=10, by its plan; empty when there is no ring.
     pub scratch_points: Vec<[u32; abi::HIGHEST_LEVEL as usize + 1]>,
+    /// The products of a weight and a vertex that these take.
+    pub scratch_products: Vec<[u64; abi::HIGHEST_LEVEL as usize + 1]>,
     /// The deepest level that is evaluated exactly; tess factors stay at or below 2 to this.
     pub max_level: u32,
     /// What the evaluation shader computes, on the CPU.
@@ -367,6 +369,7 @@ impl Pass {
             texture: Vec::new(),
             tables: Vec::new(),
             scratch_points: Vec::new(),
+            scratch_products: Vec::new(),
             max_level: abi::HIGHEST_LEVEL,
             twin,
         }
@@ -410,9 +413,22 @@ impl Pass {
 
     /// The points that patch `patch` needs in the ring at `level`, from 10 on as at 10; none where there is no such patch.
     pub fn points(&self, patch: usize, level: u32) -> u32 {
-        let plan = self.patches.get(patch).map(|patch| patch.plan as usize);
-        let points = plan.and_then(|plan| self.scratch_points.get(plan));
+        let points = self.by_plan(&self.scratch_points, patch);
         points.map_or(0, |points| points[level.min(abi::HIGHEST_LEVEL) as usize])
+    }
+
+    /// The products of a weight and a vertex that these points take.
+    pub fn products(&self, patch: usize, level: u32) -> u64 {
+        let products = self.by_plan(&self.scratch_products, patch);
+        products.map_or(0, |products| {
+            products[level.min(abi::HIGHEST_LEVEL) as usize]
+        })
+    }
+
+    /// What a list has for a patch's plan.
+    fn by_plan<'a, T>(&self, list: &'a [T], patch: usize) -> Option<&'a T> {
+        let plan = self.patches.get(patch)?.plan;
+        list.get(plan as usize)
     }
 }
 

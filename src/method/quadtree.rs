@@ -154,6 +154,7 @@ fn irregular(
     }
     let records = with_places(&mut pass, &borders);
     pass.scratch_points = records.iter().map(slot_sizes).collect();
+    pass.scratch_products = records.iter().map(products).collect();
     statistics.edge_plans += borders.edge_plans;
     statistics.vertex_plans += borders.vertex_plans;
     statistics.quadtree_bytes += inside_bytes;
@@ -172,6 +173,19 @@ fn irregular(
 /// The points of a patch's slot at each level.
 fn slot_sizes(border: &abi::Border) -> [u32; abi::HIGHEST_LEVEL as usize + 1] {
     border.ends.map(|[.., last]| last)
+}
+
+/// The products of a weight and a vertex in a patch's slot at each level. Of a corner's two points one is a normal, by two tangents.
+fn products(border: &abi::Border) -> [u64; abi::HIGHEST_LEVEL as usize + 1] {
+    border.ends.map(|ends| {
+        let mut start = abi::USES + border.plain_count;
+        let of_use = |(number, end): (usize, u32)| {
+            let stencils = end - std::mem::replace(&mut start, end);
+            let tangents = u32::from(number >= 5 && stencils > 0);
+            u64::from(border.sizes[number]) * u64::from(stencils + tangents)
+        };
+        ends.into_iter().enumerate().map(of_use).sum()
+    })
 }
 
 impl PlanStatistics {

@@ -165,11 +165,16 @@ impl<'a> Drawing<'a> {
     /// What is drawn at a cut, with what the host decides about patches on the device.
     pub fn draw_list(&mut self, cut: Cut, tags: Option<&DepthTags>) -> Result<DrawList> {
         let list = self.surface().draw_list(cut, tags)?;
+        self.bring(&list)?;
+        Ok(list)
+    }
+
+    /// Brings to the device what the host decided about patches, unless it was the last to be brought.
+    pub fn bring(&mut self, list: &DrawList) -> Result<()> {
         let device = &self.gpu.device;
         let surface = self.surface_mut();
         // SAFETY: device and allocator made the surface; every submission has been waited for.
-        unsafe { surface.write_draws(device.raw(), &mut device.allocator(), &list)? };
-        Ok(list)
+        unsafe { surface.write_draws(device.raw(), &mut device.allocator(), list) }
     }
 
     /// The pipelines for a target, which go when they are dropped.

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod approximation;
+mod bench;
 mod camera;
 mod capture;
 mod compare;
@@ -49,6 +50,8 @@ enum Command {
     Tessellate(tessellate::Arguments),
     /// Draw methods side by side, with maps of their errors
     Compare(compare::Arguments),
+    /// Measure what frames cost, in time and in work
+    Bench(bench::Arguments),
     /// Tell how the faces of a model are planned
     Plan(plan::Arguments),
     /// List the Vulkan devices and how they suit us
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => {
             model::named(Some(&arguments.model), compare::run(arguments, global))
         }
+        Command::Bench(arguments) => bench::run(arguments, global),
         Command::Plan(arguments) => {
             model::named(Some(&arguments.model), plan::run(arguments, global))
         }

@@ -406,7 +406,8 @@ fn device(text: &str) -> Result<String, &'static str> {
     }
 }
 
-fn level(text: &str) -> Result<f32, &'static str> {
+/// A tess level.
+pub fn level(text: &str) -> Result<f32, &'static str> {
     match text.parse() {
         Ok(level) if (1.0..=64.0).contains(&level) => Ok(level),
         _ => Err("expected a number from 1 to 64"),

@@ -1,0 +1,191 @@
+//! `hullform bench`: what a frame costs, by model, method, level and backend, in time and in work.
+
+mod plot;
+mod row;
+mod subject;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use hullform::gpu::Backend;
+use hullform::mesh::Model;
+use hullform::method::{METHODS, Method, Reproduces, method};
+use hullform::{Error, Result};
+use serde_json::{Value, json};
+
+use crate::drawing::Drawing;
+use crate::gpu::Gpu;
+use crate::options::{self, Chosen, Global, Json};
+use crate::output::{self, Contents};
+use crate::{model, print, print_json, progress};
+use row::Row;
+use subject::Subject;
+
+/// What ratios are to: the faces themselves.
+fn yardstick() -> &'static Method {
+    let is_faces = |method: &&Method| matches!(method.contract.reproduces, Reproduces::Faces(_));
+    METHODS
+        .iter()
+        .find(is_faces)
+        .expect("there is the baseline")
+}
+
+/// Options of `bench`.
+#[derive(Args)]
+pub struct Arguments {
+    /// OBJ files, or builtin:NAME
+    #[arg(required = true, value_name = "MODEL")]
+    models: Vec<PathBuf>,
+    #[command(flatten)]
+    shape: options::Shape,
+    #[command(flatten)]
+    tables: options::Tables,
+    /// Methods [default: all that can draw a model]; `flat`, which ratios are to, is always measured
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    methods: Vec<String>,
+    /// Tessellation levels, 1 to 64
+    #[arg(long, value_name = "L,M,...", value_delimiter = ',', default_value = "1,2,4,8,16,32", value_parser = options::level)]
+    levels: Vec<f32>,
+    /// Spacing of the vertices along an edge
+    #[arg(long, default_value = "equal")]
+    spacing: options::Spacing,
+    /// Who cuts patches into triangles, one or several
+    #[arg(
+        long,
+        value_name = "A,B,...",
+        value_delimiter = ',',
+        default_value = "tessellator"
+    )]
+    backend: Vec<options::Backend>,
+    /// How many times a frame draws the surface
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
+    passes: u32,
+    /// Frames that are measured of each, all in turn; one more warms up
+    #[arg(long, value_name = "N", default_value = "20", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    frames: u32,
+    /// Write results as JSON into a file; without FILE print them
+    #[arg(long, id = "json", value_name = "FILE", num_args = 0..=1, default_missing_value = "-", value_parser = Json::anywhere)]
+    json: Option<Json>,
+    /// Write results as comma-separated values
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write a picture of them: times over levels
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+/// Measures, prints a table, and writes what is asked for.
+pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    let reads: Vec<&Path> = arguments
+        .models
+        .iter()
+        .filter_map(|path| model::file(Some(path)))
+        .collect();
+    let json = match &arguments.json {
+        Some(Json::File(path)) => Some(("--json", path.as_path())),
+        _ => None,
+    };
+    let csv = arguments.csv.as_deref().map(|path| ("--csv", path));
+    let plot = arguments.plot.as_deref().map(|path| ("--plot", path));
+    let writes: Vec<_> = [json, csv, plot].into_iter().flatten().collect();
+    let files = output::create(&reads, &writes)?;
+    let gpu = Gpu::open(global)?;
+    let mut rows = Vec::new();
+    for path in &arguments.models {
+        let measured = measure(&gpu, path, arguments, global);
+        rows.extend(model::named(Some(path), measured)?);
+    }
+    row::set_ratios(&mut rows);
+    let info = gpu.device.info();
+    let report = json!({
+        "device": info.name,
+        "driver": format!("{} {}", info.driver.name, info.driver.info),
+        "rows": rows.iter().map(Row::json).collect::<Vec<Value>>(),
+    });
+    let title = format!("{}, {} {}", info.name, info.driver.name, info.driver.info);
+    gpu.finish()?;
+    let as_json: &Contents = &|out| writeln!(out, "{report:#}");
+    let as_csv: &Contents = &|out| row::write_csv(out, &report);
+    let drawn = plot::svg(&title, &rows);
+    let as_plot: &Contents = &|out| out.write_all(drawn.as_bytes());
+    let contents = [(json, as_json), (csv, as_csv), (plot, as_plot)];
+    let contents = contents.into_iter().filter(|(file, _)| file.is_some());
+    output::write(
+        files
+            .into_iter()
+            .zip(contents.map(|(_, contents)| contents)),
+    )?;
+    if arguments.json == Some(Json::Print) || global.prints_json() {
+        print_json(&report)
+    } else {
+        print(&row::as_text(&title, &rows))
+    }
+}
+
+/// Draws all frames of a model: everything in turn, so that whatever else the machine does meets all of it.
+fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Result<Vec<Row>> {
+    let model = Model::new(model::load(Some(path), &arguments.shape)?);
+    let methods = methods(arguments, &model)?;
+    let options = arguments.tables.options(&methods)?;
+    let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
+    let mut subjects = Vec::new();
+    for &method in &methods {
+        let chosen = Chosen {
+            method,
+            options,
+            by_default: false,
+        };
+        for &backend in &arguments.backend {
+            let prepared = Drawing::prepare(&model, chosen).and_then(|prepared| {
+                Backend::from(backend).check(&prepared, greatest)?;
+                Ok(prepared)
+            });
+            match prepared {
+                Ok(prepared) => {
+                    let drawn = (method.name, backend.into());
+                    subjects.push(Subject::new(
+                        gpu, path, &model, prepared, drawn, arguments, global,
+                    )?);
+                }
+                // What was not asked for by name may be refused, or left to another backend.
+                Err(error) if arguments.methods.is_empty() || arguments.backend.len() > 1 => {
+                    tracing::warn!("{}: {} is left out: {error}", path.display(), method.name);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    progress::during("drawing frames", |bar| {
+        bar.set_length(u64::from(arguments.frames) + 1);
+        for _ in 0..=arguments.frames {
+            for subject in &mut subjects {
+                subject.draw()?;
+            }
+            bar.inc(1);
+        }
+        Ok::<_, Error>(())
+    })?;
+    Ok(subjects.iter().flat_map(Subject::rows).collect())
+}
+
+/// The methods of `--methods`, or all that can draw the model, and what ratios are to.
+fn methods(arguments: &Arguments, model: &Model) -> Result<Vec<&'static Method>> {
+    let mut methods: Vec<&'static Method> = Vec::new();
+    let asked = arguments.methods.iter().map(|name| method(name));
+    let able = METHODS
+        .iter()
+        .filter(|method| method.check_model(model).is_ok());
+    let all = if arguments.methods.is_empty() {
+        able.map(Ok).collect::<Vec<_>>()
+    } else {
+        asked.chain([Ok(yardstick())]).collect()
+    };
+    for method in all {
+        let method = method?;
+        method.check(model.mesh().options().scheme)?;
+        if !methods.iter().any(|other| other.name == method.name) {
+            methods.push(method);
+        }
+    }
+    Ok(methods)
+}

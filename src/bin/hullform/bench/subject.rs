@@ -1,0 +1,238 @@
+//! A model on the device by a method, drawn again and again at some levels.
+
+use std::path::Path;
+
+use hullform::gpu::{Backend, Cut, DrawList, Fill, SurfaceOptions};
+use hullform::host::{OffscreenTarget, StatisticsQuery, TimestampQuery};
+use hullform::mesh::Model;
+use hullform::method::Prepared;
+use hullform::{Error, Result};
+
+use super::Arguments;
+use super::row::{Row, Work};
+use crate::drawing::{Drawing, OwnPipelines};
+use crate::gpu::Gpu;
+use crate::options::Global;
+use crate::render;
+
+/// What is drawn at several levels, each with its times. Triangles are made and thrown away: what they cover costs all methods the same.
+pub struct Subject<'a> {
+    gpu: &'a Gpu,
+    model: String,
+    method: &'static str,
+    backend: Backend,
+    passes: u32,
+    ring_bytes: u64,
+    device_bytes: u64,
+    drawing: Drawing<'a>,
+    pipelines: OwnPipelines<'a>,
+    target: OffscreenTarget,
+    clock: Option<TimestampQuery>,
+    /// Tells whether frames are whole, where the device counts. Elsewhere the shaders do, and all methods bear an atomic operation a vertex.
+    statistics: Option<StatisticsQuery>,
+    levels: Vec<Level>,
+}
+
+/// A level, and what its frames took and did.
+struct Level {
+    list: DrawList,
+    work: Option<Work>,
+    cpu: Vec<f64>,
+    gpu: Vec<f64>,
+}
+
+impl<'a> Subject<'a> {
+    /// Brings a model to the device, as a method prepared it.
+    pub fn new(
+        gpu: &'a Gpu,
+        path: &Path,
+        model: &Model,
+        prepared: Prepared,
+        (method, backend): (&'static str, Backend),
+        arguments: &Arguments,
+        global: &Global,
+    ) -> Result<Subject<'a>> {
+        let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
+        let device_counts = gpu.device.info().support.optional.pipeline_statistics_query
+            && backend == Backend::Tessellator;
+        let options = SurfaceOptions {
+            backend,
+            count_vertices: !device_counts,
+            ring_bytes: global.ring_bytes,
+            slots: Drawing::slots(global.slots),
+            greatest_level: greatest,
+            rounds: arguments.passes,
+            ..SurfaceOptions::default()
+        };
+        let before = gpu.device.allocated_bytes();
+        let mut drawing = Drawing::of(gpu, model, prepared, options)?;
+        drawing.upload(global.points)?;
+        let device_bytes = gpu.device.allocated_bytes() - before;
+        // Nothing is rasterised, but draws need a render pass.
+        let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
+        let spacing = arguments.spacing.into();
+        let list = |&level: &f32| {
+            let cut = Cut { level, spacing };
+            Ok(Level {
+                list: drawing.surface().draw_list(cut, None)?,
+                work: None,
+                cpu: Vec::new(),
+                gpu: Vec::new(),
+            })
+        };
+        let levels = arguments.levels.iter().map(list).collect::<Result<_>>()?;
+        let statistics = device_counts.then(|| StatisticsQuery::new(&gpu.device));
+        Ok(Subject {
+            gpu,
+            model: model_name(path),
+            method,
+            backend,
+            passes: arguments.passes,
+            ring_bytes: global.ring_bytes,
+            device_bytes,
+            pipelines: drawing.pipelines(&target, spacing, Fill::Discard)?,
+            drawing,
+            target,
+            clock: TimestampQuery::new(&gpu.device)?,
+            statistics: statistics.transpose()?,
+            levels,
+        })
+    }
+
+    /// Draws a frame of each level. The first ones warm up.
+    pub fn draw(&mut self) -> Result<()> {
+        for number in 0..self.levels.len() {
+            self.drawing.bring(&self.levels[number].list)?;
+            let before = cpu_seconds();
+            self.submit(number)?;
+            let after = cpu_seconds();
+            let work = self.work(number)?;
+            let level = &mut self.levels[number];
+            if level.work.replace(work).is_none() {
+                continue;
+            }
+            let spent = before.zip(after).map(|(before, after)| after - before);
+            level.cpu.extend(spent);
+            if let Some(clock) = &self.clock {
+                level.gpu.push(clock.read()?);
+            }
+        }
+        Ok(())
+    }
+
+    fn submit(&self, number: usize) -> Result<()> {
+        let list = &self.levels[number].list;
+        let query = self.statistics.as_ref();
+        let device = self.gpu.device.raw();
+        // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
+        self.gpu.device.submit(|cmd| unsafe {
+            if let Some(clock) = &self.clock {
+                clock.cmd_begin(cmd);
+            }
+            self.drawing.surface().cmd_prepare(device, cmd);
+            if let Some(query) = query {
+                query.cmd_reset(cmd);
+            }
+            self.target.begin(cmd, render::CLEAR);
+            if let Some(query) = query {
+                query.cmd_begin(cmd);
+            }
+            let view = &Drawing::nowhere();
+            let mut drawn = Ok(());
+            for round in 0..self.passes {
+                let batches = list.round(round)?;
+                drawn =
+                    drawn.and_then(|()| self.drawing.cmd_draw(cmd, &self.pipelines, view, batches));
+            }
+            if let Some(query) = query {
+                query.cmd_end(cmd);
+            }
+            self.target.end(cmd);
+            self.drawing.surface().cmd_read_back(device, cmd);
+            if let Some(clock) = &self.clock {
+                clock.cmd_end(cmd);
+            }
+            drawn
+        })
+    }
+
+    /// What the frame just drawn did. One of which something is missing would be a fast one, and is refused.
+    fn work(&self, number: usize) -> Result<Work> {
+        let list = &self.levels[number].list;
+        let batches = || {
+            (0..self.passes)
+                .filter_map(|round| list.round(round).ok())
+                .flatten()
+        };
+        let counters = self.drawing.counters()?;
+        if counters.overflows > 0 {
+            return Err(Error::Refused(format!(
+                "{} patches found no room in the ring; give it more --ring-bytes, or --slots host",
+                counters.overflows
+            )));
+        }
+        let predicted: u64 = batches().map(|batch| u64::from(batch.vertices())).sum();
+        let evaluations = match &self.statistics {
+            Some(query) => query.read()?[1],
+            None => {
+                self.drawing.surface().arrival(batches())?.check()?;
+                predicted
+            }
+        };
+        if evaluations < predicted {
+            let missing = predicted - evaluations;
+            let what = format!("{missing} of {predicted} vertices of a frame");
+            return Err(Error::Lost { what });
+        }
+        let prepared = self.drawing.surface().prepared();
+        let products = |batch: hullform::gpu::Batch<'_>| -> u64 {
+            let pass = &prepared.passes[batch.pass()];
+            let patches = batch.patches().map(|patch| patch as usize);
+            patches.map(|patch| list.cut().products(pass, patch)).sum()
+        };
+        Ok(Work {
+            patches: batches().map(|batch| batch.patches().len() as u64).sum(),
+            evaluations,
+            points: u64::from(counters.points),
+            products: batches().map(products).sum(),
+            draws: batches().map(|batch| batch.draws().len() as u64).sum(),
+            barriers: batches().filter(|batch| batch.waits()).count() as u64,
+        })
+    }
+
+    /// A row a level.
+    pub fn rows(&self) -> impl Iterator<Item = Row> + '_ {
+        self.levels.iter().map(|level| Row {
+            model: self.model.clone(),
+            method: self.method,
+            level: level.list.cut().level,
+            backend: self.backend.name(),
+            passes: self.passes,
+            cpu: level.cpu.clone(),
+            gpu: level.gpu.clone(),
+            is_software: self.gpu.device.is_software(),
+            ratio_to_flat: None,
+            work: level.work.unwrap_or_default(),
+            ring_bytes: self.ring_bytes,
+            device_bytes: self.device_bytes,
+            storage_buffers: hullform::gpu::Layout::STORAGE_BUFFERS,
+        })
+    }
+}
+
+/// A file's name without its folder, a built-in one as it is.
+fn model_name(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    stem.to_string_lossy().into_owned()
+}
+
+/// Seconds that all threads of this process have computed; llvmpipe's threads draw within it.
+fn cpu_seconds() -> Option<f64> {
+    #[cfg(target_os = "linux")]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+    }
+    #[cfg(not(target_os = "linux"))]
+    None
+}

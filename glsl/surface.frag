@@ -4,7 +4,6 @@
 // Shading for people who have no renderer of their own: lit, or telling what the surface is made of.
 
 #include "lib/interface.glsl"
-#include "lib/unit.glsl"
 #include "method"
 #include "lib/shading.glsl"
 
@@ -43,7 +42,7 @@ vec3 valence_colour(Patch record) {
 // The direction in which the pixel is seen. Of a triangle that is seen from its edge the line of sight may meet the plane behind the eye, or
 // nowhere.
 vec3 towards_eye(Axes view) {
-    vec3 to_eye = unit(frame.eye - in_position);
+    vec3 to_eye = direction(frame.eye - in_position);
     float along = dot(to_eye, view.back);
     return along > 0.0 ? to_eye : along < 0.0 ? -to_eye : view.back;
 }
@@ -54,9 +53,9 @@ vec3 towards_eye(Axes view) {
 // Each of the two alone is lost in rounding somewhere: the plane on slivers, the eye's view at silhouettes. Where the surface has no normal, or
 // opposite ones meet, the plane's will do.
 vec3 normal_of_side(vec3 to_eye) {
-    vec3 plane = unit(cross(unit(dFdx(in_position)), unit(dFdy(in_position))));
+    vec3 plane = direction(cross(direction(dFdx(in_position)), direction(dFdy(in_position))));
     if (dot(plane, to_eye) < 0.0) plane = -plane;
-    vec3 normal = unit(in_normal);
+    vec3 normal = direction(in_normal);
     if (normal == vec3(0.0)) return plane == vec3(0.0) ? to_eye : plane;
     if (!gl_FrontFacing) normal = -normal;
     return dot(normal, plane) < 0.0 && dot(normal, to_eye) < -0.1 ? -normal : normal;
@@ -78,7 +77,7 @@ void main() {
     vec3 colour = vec3(0.56, 0.33, 0.22);
     float gloss = 0.25;
     switch (SHADING) {
-    case SHADING_NORMAL: out_colour = vec4(0.5 + 0.5 * unit(in_normal), 1.0); return;
+    case SHADING_NORMAL: out_colour = vec4(0.5 + 0.5 * direction(in_normal), 1.0); return;
     case SHADING_LINES: out_colour = vec4(vec3(0.02), 1.0); return;
     case SHADING_PATCH: colour = patch_colour(in_patch * 2u + record.ptex); break;
     case SHADING_NODE: colour = node_colour(record, pixel); break;

@@ -40,7 +40,7 @@ const uint POINTS_RING = 2u;
 const uint POINTS_NORMALS = 3u;
 // Kind of a step: normals from tangents, where a point has none yet.
 const uint POINTS_SPARE = 4u;
-// Kind of a step: normals from tangents nearby, where a point's own is none, or another.
+// Kind of a step: normals from those nearby, where a point's own is none, or another.
 const uint POINTS_NEARBY = 5u;
 // Row flag: the ring of faces is open, its first and last vertex belong to one face each.
 const uint ROW_OPEN = 2147483648u;

@@ -27,10 +27,6 @@ void blend(PointRow row, uint number) {
     points[number].position = position;
 }
 
-// The square of the least sine between the tangents of a firm row, and of how far a normal may be from that nearby, if it is to stay.
-const float FIRM = 0.00390625;
-const float NEAR = 0.25;
-
 // The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
 // they are small beside the model. Zero where rounding may have made it.
 vec3 tangent_normal(PointRow row) {
@@ -51,11 +47,9 @@ vec3 tangent_normal(PointRow row) {
     }
     precise float roundings = float(count) + 4.0;
     precise vec2 errors = ROUNDING * (roundings * spread + reach(origin) * total);
-    if (!span_plane(Tangents(du, dv, errors))) return vec3(0.0);
-    vec3 normal = exact_cross(unit(du), unit(dv));
-    precise float square = (normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z;
-    if ((row.count & ROW_FIRM) != 0u && square < FIRM) return vec3(0.0);
-    return unit(normal);
+    Tangents tangents = Tangents(du, dv, errors);
+    if ((row.count & ROW_FIRM) != 0u && !are_firm(tangents)) return vec3(0.0);
+    return clear_normal(tangents);
 }
 
 void limit(PointRow row, uint number) {
@@ -69,14 +63,20 @@ void spare(PointRow row, uint number) {
     if (points[number].normal == vec3(0.0)) points[number].normal = tangent_normal(row);
 }
 
+// The weighted mean of other points' normals.
+vec3 mean_normal(PointRow row) {
+    precise vec3 normal = vec3(0.0);
+    for (uint i = 0u; i < row.count; ++i) {
+        PointTerm term = terms[row.first + i];
+        normal = normal + term.position * points[term.source].normal;
+    }
+    return unit(normal);
+}
+
 // Where the normal is none, or far from that nearby.
 void nearby(PointRow row, uint number) {
-    vec3 beside = tangent_normal(row);
-    vec3 own = points[number].normal;
-    precise vec3 apart = own - beside;
-    precise float square = (apart.x * apart.x + apart.y * apart.y) + apart.z * apart.z;
-    bool near = own != vec3(0.0) && square < NEAR;
-    if (!near && beside != vec3(0.0)) points[number].normal = beside;
+    vec3 beside = mean_normal(row);
+    if (!are_near(points[number].normal, beside) && beside != vec3(0.0)) points[number].normal = beside;
 }
 
 // The areas of the triangles between the spokes. Of an open ring there is none between the last and the first. Each spoke errs by the rounding of both
@@ -101,15 +101,6 @@ void ring(PointRow row, uint number) {
     points[number].normal = reach(normal) > CLEAR * error ? unit(normal) : vec3(0.0);
 }
 
-void normals(PointRow row, uint number) {
-    precise vec3 normal = vec3(0.0);
-    for (uint i = 0u; i < row.count; ++i) {
-        PointTerm term = terms[row.first + i];
-        normal = normal + term.position * points[term.source].normal;
-    }
-    points[number].normal = unit(normal);
-}
-
 void main() {
     if (gl_GlobalInvocationID.x >= point_step.count) return;
     PointRow row = rows[point_step.first_row + gl_GlobalInvocationID.x];
@@ -120,6 +111,6 @@ void main() {
     case POINTS_RING: ring(row, number); return;
     case POINTS_SPARE: spare(row, number); return;
     case POINTS_NEARBY: nearby(row, number); return;
-    default: normals(row, number);
+    default: points[number].normal = mean_normal(row);
     }
 }

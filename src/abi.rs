@@ -149,7 +149,7 @@ constants! {
     POINTS_NORMALS = 3;
     /// Kind of a step: normals from tangents, where a point has none yet.
     POINTS_SPARE = 4;
-    /// Kind of a step: normals from tangents nearby, where a point's own is none, or another.
+    /// Kind of a step: normals from those nearby, where a point's own is none, or another.
     POINTS_NEARBY = 5;
     /// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
     ROW_OPEN = 0x8000_0000;

@@ -13,12 +13,6 @@ struct Surface {
     vec3 dv;
 };
 
-// a . b, each product and sum by itself.
-float exact_dot(vec3 a, vec3 b) {
-    precise float sum = (a.x * b.x + a.y * b.y) + a.z * b.z;
-    return sum;
-}
-
 // Less than this is rounding, in the product of unit vectors each of which is a sum of a patch's points: 2^-20, sixteen units of rounding.
 const float PARALLEL = 9.5367432e-7;
 

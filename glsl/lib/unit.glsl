@@ -32,6 +32,12 @@ vec3 unit(vec3 v) {
     return to_unit;
 }
 
+// a . b, each product and sum by itself.
+float exact_dot(vec3 a, vec3 b) {
+    precise float sum = (a.x * b.x + a.y * b.y) + a.z * b.z;
+    return sum;
+}
+
 // a x b, each product and difference by itself.
 vec3 exact_cross(vec3 a, vec3 b) {
     precise vec3 product = vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);

@@ -74,7 +74,7 @@ Ring use_ring(Patch record, uint number, uint stencils) {
 // Vertex i of it.
 vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : controls[ring.places + i]); }
 
-// A stencil's sum over a ring, relative to `origin`: tangents deep in the tree are differences of small numbers then.
+// A stencil's sum over a ring, relative to `origin`: so it errs by what the ring's own size has for rounding.
 //
 // Rings too long for the vertex shader are also too long for a plain sum: where hundreds of faces meet, the tangents of neighbours differ by
 // less than it would lose.
@@ -234,6 +234,10 @@ bool has_one_normal(Patch record, vec2 uv) {
 // Row 1 is the position on an edge, row 2 that plus the derivative across.
 const Basis CURVE = Basis(vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, -1.0, 1.0, 0.0));
 
+// From this scale on, which is that of depth 2, points are relative to the one of their plan's first points that has the number of their quarter of
+// the tree (`plan/base.rs`).
+const float RELATIVE = 4.0;
+
 // Inside by the patch's own plan, on edges and at corners by those that all faces there share.
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     memoryBarrierBuffer();
@@ -256,7 +260,10 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
-    precise vec3 position = surface.position + head.xyz;
+    uint quarter = uint(local.x >= 0.5) + 2u * uint(local.y >= 0.5);
+    bool relative = leaf.scale >= RELATIVE;
+    vec3 base = relative ? scratch[first + (relative ? quarter : 0u)].xyz : vec3(0.0);
+    precise vec3 position = (surface.position + base) + head.xyz;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;
     return surface_point(Surface(position, du, dv));

@@ -33,7 +33,7 @@ pub enum Row<'a> {
     Blend(&'a Mask),
     /// Position and tangents from control vertices.
     Limit([&'a Mask; 3]),
-    /// The same; tangents that are nearly parallel give no normal.
+    /// The same; tangents that are nearly parallel, or of which one is far longer, give no normal.
     Firm([&'a Mask; 3]),
     /// Normal of the faces between the `ends` around a point, counter-clockwise.
     Ring {
@@ -44,7 +44,7 @@ pub enum Row<'a> {
         /// Whether there is no face between the last and the first.
         open: bool,
     },
-    /// Normal from those of other points.
+    /// Normal from those of other points; or that nearby.
     Normals(&'a Mask),
 }
 
@@ -139,20 +139,16 @@ impl Points {
             abi::POINTS_SPARE if before.normal != [0.0; 3] => before.normal.into(),
             abi::POINTS_SPARE => tangent_normal(terms, vertices, false),
             abi::POINTS_NEARBY => {
-                let nearby = tangent_normal(terms, vertices, false);
+                let nearby = mean_normal(terms, points);
                 let own = Vec3::from(before.normal);
-                let apart = own - nearby;
-                let near = own != Vec3::ZERO && apart.dot(apart) < NEAR;
-                if near || nearby == Vec3::ZERO {
+                if nearby == Vec3::ZERO || Tangents::are_near(own, nearby) {
                     own
                 } else {
                     nearby
                 }
             }
             abi::POINTS_RING => ring_normal(terms, points, row.count & abi::ROW_OPEN != 0),
-            _ => unit(terms.iter().fold(Vec3::ZERO, |sum, term| {
-                sum + term.position * Vec3::from(points[term.source as usize].normal)
-            })),
+            _ => mean_normal(terms, points),
         };
         Point {
             normal: normal.to_array(),
@@ -160,11 +156,6 @@ impl Points {
         }
     }
 }
-
-/// The square of the least sine between the tangents of a firm row, and of how far a normal may be from that nearby, if it is to stay: see
-/// `subdivision/normals.rs`.
-const FIRM: f32 = 1.0 / 256.0;
-const NEAR: f32 = 0.25;
 
 /// The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
 /// they are small beside the model. Zero where rounding may have made it.
@@ -183,14 +174,17 @@ fn tangent_normal(terms: &[PointTerm], vertices: &[Vec3], firm: bool) -> Vec3 {
     }
     let roundings = terms.len() as f32 + 4.0;
     tangents.errors = [0, 1].map(|i| UNIT * (roundings * spread[i] + reach(origin) * total[i]));
-    if !tangents.span_plane() {
+    if firm && !tangents.are_firm() {
         return Vec3::ZERO;
     }
-    let normal = unit(tangents.sums[0]).cross(unit(tangents.sums[1]));
-    if firm && normal.dot(normal) < FIRM {
-        return Vec3::ZERO;
-    }
-    unit(normal)
+    tangents.normal()
+}
+
+/// The weighted mean of other points' normals.
+fn mean_normal(terms: &[PointTerm], points: &[Point]) -> Vec3 {
+    unit(terms.iter().fold(Vec3::ZERO, |sum, term| {
+        sum + term.position * Vec3::from(points[term.source as usize].normal)
+    }))
 }
 
 /// The areas of the triangles between the spokes of a ring.

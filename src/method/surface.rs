@@ -69,6 +69,11 @@ pub(super) const UNIT: f32 = 0.5 * f32::EPSILON;
 /// How many times its own error a sum has to be to count as a direction. The bounds are never reached, as not all errors add up.
 pub(super) const CLEAR: f32 = 4.0;
 
+/// Where the limit's tangents count only if the surroundings have a normal like theirs: how much they span at least beside the longer one's square, and
+/// how far their normal may be from that nearby; squared. As in `subdivision/normals.rs`.
+const FIRM: f32 = 1.0 / 256.0;
+const NEAR: f32 = 0.0076;
+
 /// The greatest element.
 pub(super) fn reach(v: Vec3) -> f32 {
     v.abs().max_element()
@@ -92,6 +97,22 @@ impl Tangents {
         // An element of the product errs by no more than twice each error times the other's greatest element, which is below 4.
         let bound = 8.0 * (errors[0] + errors[1]);
         errors[0] < 2.0 && errors[1] < 2.0 && reach(a.cross(b)) > bound
+    }
+
+    /// Whether they span enough beside the longer one's square: not if they are nearly parallel, nor if one is far longer than the other.
+    pub fn are_firm(&self) -> bool {
+        let [du, dv] = self.sums;
+        let grown = factor(if reach(du) > reach(dv) { du } else { dv });
+        let (a, b) = (grown * du, grown * dv);
+        let longest = a.dot(a).max(b.dot(b));
+        let area = a.cross(b);
+        longest > 0.0 && area.dot(area) >= FIRM * (longest * longest)
+    }
+
+    /// Whether a normal and that nearby are so much alike that the former counts.
+    pub fn are_near(own: Vec3, nearby: Vec3) -> bool {
+        let apart = own - nearby;
+        own != Vec3::ZERO && apart.dot(apart) < NEAR
     }
 
     /// The unit normal; zero where it is left to rounding.

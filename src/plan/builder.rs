@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Result};
+use crate::plan::base::{Bases, DEPTH, UNUSED};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
 use crate::plan::nearby;
@@ -50,7 +51,8 @@ impl PlanOptions {
     }
 }
 
-/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring.
+/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring. Control points at depth 2 and deeper are relative to one of the
+/// plan's first four (of an edge: two), the one of the root's child in which they are, number x + 2 y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stencil {
     /// One weight a vertex of the ring.
@@ -79,13 +81,18 @@ impl Plan {
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Plan {
         let base = Level::base(configuration);
         let nearby = nearby::tangents(configuration, &base);
+        let bases = Bases::new(4);
         let mut builder = Builder {
             options,
-            rows: Rows::zero(base.rows.width(), 0),
+            rows: bases.rows(base.rows.width()),
+            bases,
             numbers: FxHashMap::default(),
         };
         let tree = builder.grow(base).fold();
-        let mut levels = vec![options.max_level; builder.rows.len()];
+        let Builder {
+            mut rows, bases, ..
+        } = builder;
+        let mut levels = vec![options.max_level; rows.len()];
         require(
             &tree,
             Span::WHOLE,
@@ -93,9 +100,10 @@ impl Plan {
             options.max_level,
             &mut levels,
         );
+        bases.apply(&mut rows, &mut levels);
         Plan {
             nearby,
-            ..sorted(tree.flatten(), &builder.rows, &levels, options.max_level)
+            ..sorted(tree.flatten(), &rows, &levels, options.max_level)
         }
     }
 
@@ -115,6 +123,8 @@ impl Plan {
 struct Cell {
     /// The corner of the face that it touches, if any; the face itself touches all four.
     corner: Option<u32>,
+    /// The child of the face, number x + 2 y, that it is or lies in; 0 for the face itself.
+    quarter: usize,
 }
 
 /// What became of a cell at its level.
@@ -128,8 +138,10 @@ struct Builder {
     options: PlanOptions,
     /// The control points as they are met.
     rows: Rows,
-    /// The rows of this level's control points.
-    numbers: FxHashMap<ControlPoint, u32>,
+    /// What the rows are relative to.
+    bases: Bases,
+    /// The rows of this level's control points, which each quarter of the face has to itself where they are relative to its corner.
+    numbers: FxHashMap<(usize, ControlPoint), u32>,
 }
 
 /// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
@@ -142,7 +154,10 @@ impl Builder {
     /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
     fn grow(&mut self, base: Level) -> Tree {
         let mut grown: Vec<Vec<Grown>> = Vec::new();
-        let mut cells = vec![Cell { corner: None }];
+        let mut cells = vec![Cell {
+            corner: None,
+            quarter: 0,
+        }];
         let mut level = base;
         for depth in 0.. {
             self.numbers.clear();
@@ -150,11 +165,20 @@ impl Builder {
             let mut parents = Vec::new();
             let mut row = Vec::with_capacity(cells.len());
             for (number, &cell) in (0..).zip(&cells) {
+                if let (1.., Some(corner)) = (depth, cell.corner) {
+                    let vertex = level.topology.face(number)[corner as usize];
+                    self.bases
+                        .found(cell.quarter, level.rows.row(vertex as usize));
+                }
                 let leaf = self.leaf(&level, number, cell, depth);
                 row.push(leaf.map_or(Grown::Children(next.len()), Grown::Leaf));
                 if let Grown::Children(_) = row[row.len() - 1] {
                     next.extend((0..4).map(|corner| Cell {
                         corner: (depth == 0 || cell.corner == Some(corner)).then_some(corner),
+                        quarter: match depth {
+                            0 => child_of_corner(corner),
+                            _ => cell.quarter,
+                        },
                     }));
                     parents.extend((0..4).map(|corner| (number, corner)));
                 }
@@ -173,18 +197,20 @@ impl Builder {
     fn leaf(&mut self, level: &Level, number: u32, cell: Cell, depth: u32) -> Option<Node> {
         let last = depth >= self.options.max_level.max(SHALLOWEST);
         let patch = bspline_patch(&level.topology, number);
+        let direct = self.options.direct_creases || last;
+        let mut points = |patch: &_| self.points(level, patch, depth, cell.quarter);
         match (patch, cell.corner) {
             (Some(patch), _) if patch.crease.is_none() => {
                 let mirrored = patch.mirrored;
                 Some(Node::Regular {
-                    points: self.points(level, &patch),
+                    points: points(&patch),
                     mirrored,
                 })
             }
-            (Some(patch), _) if self.options.direct_creases || last => {
+            (Some(patch), _) if direct => {
                 let (edge, sharpness) = patch.crease?;
                 Some(Node::Crease {
-                    points: self.points(level, &patch),
+                    points: points(&patch),
                     edge,
                     sharpness,
                 })
@@ -200,10 +226,18 @@ impl Builder {
         }
     }
 
-    fn points(&mut self, level: &Level, patch: &BsplinePatch) -> [u32; 16] {
+    fn points(
+        &mut self,
+        level: &Level,
+        patch: &BsplinePatch,
+        depth: u32,
+        quarter: usize,
+    ) -> [u32; 16] {
+        let owner = if depth < DEPTH { 0 } else { quarter };
         patch.points.map(|point| {
-            *self.numbers.entry(point).or_insert_with(|| {
+            *self.numbers.entry((owner, point)).or_insert_with(|| {
                 self.rows.push(&point.mask(), &level.rows);
+                self.bases.pushed(depth, quarter);
                 self.rows.len() as u32 - 1
             })
         })
@@ -270,9 +304,10 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
     }
 }
 
-/// Sorts the stencils by level and renumbers the points of the nodes.
+/// Sorts the stencils by level, leaves out those that nothing uses, and renumbers the points of the nodes.
 pub(super) fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_level: u32) -> Plan {
-    let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+    let used = |&point: &u32| levels[point as usize] != UNUSED;
+    let mut order: Vec<u32> = (0..rows.len() as u32).filter(used).collect();
     order.sort_by_key(|&point| levels[point as usize]);
     let mut place = vec![0; rows.len()];
     for (new, &old) in order.iter().enumerate() {

@@ -6,6 +6,7 @@
 use std::collections::VecDeque;
 
 use crate::mesh::sharpness::is_infinite;
+use crate::plan::base::{Bases, UNUSED};
 use crate::plan::builder::{DEEPEST, Plan, PlanOptions, SHALLOWEST, sorted};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
@@ -51,6 +52,7 @@ enum Branch {
 struct Builder {
     options: PlanOptions,
     rows: Rows,
+    bases: Bases,
     levels: Vec<u32>,
 }
 
@@ -84,15 +86,24 @@ impl EdgePlan {
             ends: [true; 2],
             span: Span::WHOLE,
         };
+        let bases = Bases::new(2);
         let mut builder = Builder {
             options,
-            rows: Rows::zero(base.rows.width(), 0),
-            levels: Vec::new(),
+            rows: bases.rows(base.rows.width()),
+            bases,
+            levels: vec![UNUSED; 2],
         };
         let branch = builder.grow(&base, stretch, 0);
+        let Builder {
+            mut rows,
+            bases,
+            mut levels,
+            ..
+        } = builder;
+        bases.apply(&mut rows, &mut levels);
         let nodes = flatten(branch);
         EdgePlan {
-            plan: sorted(nodes, &builder.rows, &builder.levels, options.max_level),
+            plan: sorted(nodes, &rows, &levels, options.max_level),
             sides: if sharp { sides } else { Vec::new() },
         }
     }
@@ -107,8 +118,14 @@ impl Builder {
             ends,
             span,
         } = stretch;
+        // The half of the edge that it is or lies in.
+        let half = usize::from(!span.interior_half_is_upper());
+        let both = [from, level.topology.edge(edge).other(from)];
+        for (vertex, _) in both.iter().zip(ends).filter(|(_, end)| depth > 0 && *end) {
+            self.bases.found(half, level.rows.row(*vertex as usize));
+        }
         if let Some(curve) = edge_curve(&level.topology, edge, from, sides) {
-            return Branch::Leaf(self.leaf(level, &curve, span));
+            return Branch::Leaf(self.leaf(level, &curve, span, depth));
         }
         let last = depth >= self.options.max_level.max(SHALLOWEST);
         if let Some(end) = ends.iter().position(|&touches| touches).filter(|_| last) {
@@ -141,13 +158,15 @@ impl Builder {
         Branch::Inner(Box::new(halves))
     }
 
-    fn leaf(&mut self, level: &Level, curve: &EdgeCurve, span: Span) -> Node {
+    fn leaf(&mut self, level: &Level, curve: &EdgeCurve, span: Span, depth: u32) -> Node {
+        let half = usize::from(!span.interior_half_is_upper());
         let required = span.required_level(self.options.max_level);
         let mut row = |masks: &[Mask; 4]| {
             let first = self.rows.len() as u32;
             for mask in masks {
                 self.rows.push(mask, &level.rows);
                 self.levels.push(required);
+                self.bases.pushed(depth, half);
             }
             [0, 1, 2, 3].map(|x| first + x)
         };

@@ -1,5 +1,6 @@
 //! Subdivision plans (Brainerd et al. 2016, sections 4 and 7.2): what a face needs to know about its limit, apart from positions.
 
+mod base;
 mod builder;
 mod catalogue;
 mod configuration;

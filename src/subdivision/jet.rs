@@ -126,12 +126,14 @@ impl Jet {
         (normal.length() > CLEAR * error).then(|| normal.normalize())
     }
 
-    /// The sine of the angle between the derivatives.
-    pub fn sine(&self) -> f64 {
-        let unit = |sum: Sum| sum.direction().unwrap_or_default().value;
-        let (du, dv) = (unit(self.du), unit(self.dv));
-        du.normalize_or_zero()
-            .cross(dv.normalize_or_zero())
-            .length()
+    /// How much the derivatives span beside the square of the longer one.
+    pub fn spread(&self) -> f64 {
+        let (du, dv) = (self.du.value, self.dv.value);
+        let longer = du.length().max(dv.length());
+        if longer > 0.0 {
+            (du / longer).cross(dv / longer).length()
+        } else {
+            0.0
+        }
     }
 }

@@ -9,6 +9,7 @@ mod dart;
 
 use std::f64::consts::PI;
 
+use crate::mesh::Scheme;
 use crate::mesh::sharpness::{Rule, is_infinite, is_semi_sharp, rule};
 use crate::mesh::topology::{Fan, Topology};
 use crate::subdivision::masks::Mask;
@@ -138,6 +139,22 @@ pub fn closing_tangents(topology: &Topology, face: u32, corner: u32) -> Option<[
             .collect()
     };
     Some([wave(f64::cos), wave(f64::sin)])
+}
+
+/// Whether no tangent plane is promised at `corner` of `face` between several faces, as refinement may turn their edges into one direction, on whichever
+/// side: of the butterfly at boundaries and creases, of Loop-Stam between triangles and other faces, and where two triangles close. There the limit's
+/// tangents count only if the surroundings have a normal like theirs.
+pub fn is_unpromised(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> bool {
+    let Fan { faces, closed, .. } = topology.fan(face, corner);
+    let is_triangle = |&&face: &&u32| topology.face(face).len() == 3;
+    let triangles = faces.iter().filter(is_triangle).count();
+    let close = closed && faces.len() == 2;
+    match scheme {
+        Scheme::CatmullClark | Scheme::Bilinear => false,
+        Scheme::Loop => close,
+        Scheme::Butterfly => close || !closed,
+        Scheme::LoopStam => triangles > 0 && (close || triangles < faces.len()),
+    }
 }
 
 /// Whether the limit has a cusp at `corner` of `face`: each face of the [`fan`](Topology::fan) has a tangent plane of its own. A semi-sharp feature

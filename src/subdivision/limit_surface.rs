@@ -177,7 +177,10 @@ impl LimitSurface {
                 x.min(1.0)
             }
         };
-        let uv = DVec2::new(snapped(u), snapped(v));
+        let mut uv = DVec2::new(snapped(u), snapped(v));
+        if self.topology.face(face).len() == 3 && self.scheme.is_whole(3) {
+            uv.y = uv.y.min(1.0 - uv.x);
+        }
         let jet = self.jet(face, corner, uv);
         Some(LimitSample {
             position: self.scale * jet.position,
@@ -224,12 +227,6 @@ impl LimitSurface {
 
     /// Any scheme, with its rules alone. Slower than [`LimitSurface::catmull_clark`], which refines no more than it needs.
     fn by_rules(&self, face: u32, corner: u32, uv: DVec2) -> Jet {
-        let triangle = self.topology.face(face).len() == 3;
-        let uv = if triangle {
-            DVec2::new(uv.x, uv.y.min(1.0 - uv.x))
-        } else {
-            uv
-        };
         let mut faces = vec![face];
         for _ in 0..rings(self.scheme) {
             faces = with_neighbours(&self.topology, &faces);

@@ -20,7 +20,8 @@ pub use curve::{EdgeCurve, edge_curve};
 pub(crate) use deep::orthonormal;
 pub use deep::{deep_limit, tangents_nearby};
 pub use limit::{
-    LimitStencil, TangentPlane, closing_tangents, is_cusp, limit_stencil, tangent_plane,
+    LimitStencil, TangentPlane, closing_tangents, is_cusp, is_unpromised, limit_stencil,
+    tangent_plane,
 };
 pub use limit_surface::{LimitSample, LimitSurface};
 pub use masks::{Blend, Mask, edge_point, face_point, vertex_point};

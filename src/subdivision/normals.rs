@@ -3,18 +3,20 @@
 use glam::{DVec2, DVec3};
 
 use crate::mesh::Scheme;
+use crate::mesh::topology::Fan;
 use crate::subdivision::Mask;
 use crate::subdivision::jet::{CLEAR, Jet, Sum};
-use crate::subdivision::limit::{TangentPlane, closing_tangents, tangent_plane};
+use crate::subdivision::limit::{TangentPlane, closing_tangents, is_unpromised, tangent_plane};
 use crate::subdivision::limit_surface::{LimitSurface, nearest_corner};
 
 /// How far from a corner its surroundings are asked, in ptex coordinates: as near as tess level 64 ever comes, the greatest that Vulkan asks for.
 const NEARBY: f64 = 1.0 / 64.0;
 
-/// At the corner of a single face both sharp edges span the limit's plane. It is taken if the sine between them is at least this, 3.6 degrees from
-/// straight, and if its normal is no farther than this from that nearby, 29 degrees.
+/// At the corner of a single face both sharp edges span the limit's plane. It is taken if their product is at least this beside the longer one's square,
+/// as far as edges of one length are when 3.6 degrees from straight, and if the square of its normal's distance from that nearby is below this: 4 sin^2 (5 / 2 degrees) and a little less. What turns faster is
+/// seen as a dark spot (`FASTER` in `conformance/witness/corners.rs`).
 const FIRM: f64 = 1.0 / 16.0;
-const NEAR: f64 = 0.5;
+const NEAR: f64 = 0.0076;
 
 impl LimitSurface {
     /// The normal at (u, v) of the ptex face of a corner, whose derivatives there are known.
@@ -37,21 +39,15 @@ impl LimitSurface {
         let cusp = matches!(tangent_plane(topology, face, corner), TangentPlane::Face(_));
         let own = || self.nearby(face, corner);
         let found = match &fan.faces[..] {
-            [_] => self.of_single(jet, own()),
+            [_] => of_checked(jet, own()),
             _ if cusp => own().or_else(|| jet.normal()),
-            faces => jet
+            _ if is_unpromised(topology, self.scheme(), face, corner) => {
+                of_checked(jet, self.around(&fan))
+            }
+            _ => jet
                 .normal()
                 .or_else(|| self.closing(face, corner))
-                .or_else(|| {
-                    let corners = faces.iter().map(|&face| self.corner_of(face, fan.vertex));
-                    let nearby = faces
-                        .iter()
-                        .zip(corners)
-                        .map(|(&face, at)| self.nearby(face, at));
-                    // Unit vectors: below this they cancel.
-                    let sum: DVec3 = nearby.flatten().sum();
-                    (sum.length() > FIRM).then(|| sum.normalize())
-                }),
+                .or_else(|| self.around(&fan)),
         };
         let asking = if cusp { &[face][..] } else { &fan.faces[..] };
         found.or_else(|| self.of_faces(asking))
@@ -77,15 +73,15 @@ impl LimitSurface {
         jet.blurred(8.0 * self.grain).normal()
     }
 
-    /// Where a single face lies between two sharp edges.
-    fn of_single(&self, jet: &Jet, nearby: Option<DVec3>) -> Option<DVec3> {
-        let limit = jet.normal();
-        let firm = limit.filter(|_| jet.sine() >= FIRM);
-        match (firm, nearby) {
-            (Some(limit), Some(nearby)) if limit.distance(nearby) < NEAR => Some(limit),
-            (_, Some(nearby)) => Some(nearby),
-            (_, None) => limit,
-        }
+    /// The mean of the normals nearby on all faces of a fan.
+    fn around(&self, fan: &Fan) -> Option<DVec3> {
+        let nearby = fan.faces.iter().filter_map(|&face| {
+            let corner = self.corner_of(face, fan.vertex);
+            self.nearby(face, corner)
+        });
+        // Unit vectors: below this they cancel.
+        let sum: DVec3 = nearby.sum();
+        (sum.length() > FIRM).then(|| sum.normalize())
     }
 
     /// Of the derivatives next to a corner.
@@ -151,5 +147,17 @@ impl LimitSurface {
         let mut vertices = self.topology().face(face).iter();
         let corner = vertices.position(|&v| v == vertex);
         corner.expect("the faces of a fan have its vertex") as u32
+    }
+}
+
+/// Where a single face lies between two sharp edges, and where no tangent plane is promised: the limit's own normal, if its tangents are firm and the
+/// surroundings have one like it.
+fn of_checked(jet: &Jet, nearby: Option<DVec3>) -> Option<DVec3> {
+    let limit = jet.normal();
+    let firm = limit.filter(|_| jet.spread() >= FIRM);
+    match (firm, nearby) {
+        (Some(limit), Some(nearby)) if limit.distance_squared(nearby) < NEAR => Some(limit),
+        (_, Some(nearby)) => Some(nearby),
+        (_, None) => limit,
     }
 }

@@ -19,6 +19,9 @@ const SOURCE: &str = "affine invariance: weights sum to 1";
 const CASES: u32 = 2;
 const MESHES: u32 = 5;
 
+/// Of how many of these the truth is asked.
+const ASKED: u32 = 2;
+
 pub(super) fn cases() -> Vec<Case> {
     let numbered = pairs().flat_map(|pair| (0..CASES).map(move |number| (pair, number)));
     let case = |((method, scheme), number): ((&'static Method, Scheme), u32)| {
@@ -54,8 +57,9 @@ fn planes(
             continue;
         }
         flat += 1;
-        // The baseline does every scheme: each truth is asked once.
-        if matches!(method.contract.reproduces, Reproduces::Faces(_)) {
+        // The baseline does every scheme: each truth is asked once, and of some meshes, for it takes its time.
+        let is_asked = number < ASKED && matches!(method.contract.reproduces, Reproduces::Faces(_));
+        if is_asked {
             hold_truth(&mut check, &model, &plane, number);
         }
         looked.add(hold_device(context, &mut check, &subject, &plane, number)?);
@@ -87,10 +91,11 @@ fn hold_device(
             // Then there is no side for normals to be on.
             return Ok(());
         }
+        let has_area = areas(patch, plane.normal).any(|area| area > 1e-9 * scale * scale);
         for vertex in patch.vertices {
             let height = (position(vertex) - origin).dot(plane.normal) / scale;
             let off = degrees(normal(vertex), plane.normal);
-            let missing = vertex.normal == [0.0; 3];
+            let missing = vertex.normal == [0.0; 3] && has_area;
             check.hold(height.abs() < 1e-6 && off < 5e-4 && !missing, || {
                 let (ptex, uv) = (patch.ptex(), vertex.uv);
                 let given = normal(vertex);
@@ -105,13 +110,29 @@ fn hold_device(
 
 /// Whether a patch turns over: no face does, but boundaries and creases that are drawn to others' sides may.
 fn is_folded(patch: &Patch<'_>, up: DVec3, scale: f64) -> bool {
+    areas(patch, up).any(|area| area < -1e-9 * scale * scale)
+}
+
+/// Twice the areas of a patch's triangles.
+fn areas(patch: &Patch<'_>, up: DVec3) -> impl Iterator<Item = f64> {
     let uv: Vec<[f32; 2]> = patch.vertices.iter().map(|vertex| vertex.uv).collect();
-    triangulate(patch.pass.domain, &uv)
-        .into_iter()
-        .any(|triangle| {
-            let [a, b, c] = triangle.map(|i| position(&patch.vertices[i as usize]));
-            (b - a).cross(c - a).dot(up) < -1e-9 * scale * scale
-        })
+    let triangles = triangulate(patch.pass.domain, &uv).into_iter();
+    triangles.map(move |triangle| {
+        let [a, b, c] = triangle.map(|i| position(&patch.vertices[i as usize]));
+        (b - a).cross(c - a).dot(up)
+    })
+}
+
+/// Whether the surface next to a place turns over, as its positions tell.
+fn turns_over(truth: &LimitSurface, ptex: usize, [u, v]: [f64; 2], up: DVec3) -> bool {
+    const STEP: f64 = 1.0 / 64.0;
+    let [along_u, along_v] = [u, v].map(|x| if x < 0.5 { STEP } else { -STEP });
+    let places = [[u, v], [u + along_u, v], [u, v + along_v]];
+    let points = places.map(|[u, v]| truth.evaluate(ptex, u, v).map(|sample| sample.position));
+    let [Some(a), Some(b), Some(c)] = points else {
+        return false;
+    };
+    (b - a).cross(c - a).dot(up) * (along_u * along_v).signum() < 0.0
 }
 
 /// The surface in f64, at corners and inside.
@@ -131,6 +152,9 @@ fn hold_truth(check: &mut Check, model: &Model, plane: &Planar, number: u32) {
                 continue;
             };
             let off = degrees(sample.normal(), plane.normal);
+            // Where the surface turns over, so may its normal.
+            let is_turned = || off > 90.0 && turns_over(&truth, ptex, [u, v], plane.normal);
+            let off = if is_turned() { 180.0 - off } else { off };
             check.hold(off < 1e-8 && sample.normal() != DVec3::ZERO, || {
                 let given = sample.normal();
                 format!("plane {number}, the truth at ({u}, {v}) of ptex face {ptex}: {given:.9} instead of {:.9}", plane.normal)

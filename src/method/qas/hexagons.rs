@@ -9,8 +9,8 @@ use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
 use crate::subdivision::{
-    Blend, LimitStencil, Mask, Refinement, closing_tangents, deep_limit, is_cusp, refine_all,
-    tangents_nearby,
+    Blend, LimitStencil, Mask, Refinement, closing_tangents, deep_limit, is_cusp, is_unpromised,
+    refine_all, tangents_nearby,
 };
 
 /// The points of all hexagons. One a vertex of the refined mesh, more where infinite creases part its faces into sectors. At a cusp, where each
@@ -42,8 +42,8 @@ enum Kind {
     Limit,
     /// Likewise, or by others where these cancel.
     Closing,
-    /// Between two sharp edges of a single face: likewise, or by tangents nearby.
-    Single,
+    /// Between two sharp edges of a single face, and where no tangent plane is promised: likewise, or by tangents nearby on these faces.
+    Checked(Vec<u32>),
     /// At a cusp: by tangents nearby on all these faces of the sector.
     Cusp(Vec<u32>),
 }
@@ -70,7 +70,12 @@ impl Hexagons {
                 numbers.entry((vertex, sector[0])).or_insert_with(|| {
                     let (lowest, closing) = (sector[0], closing_tangents(&refined, face, corner));
                     let kind = match sector.len() {
-                        1 => Kind::Single,
+                        1 => Kind::Checked(sector),
+                        _ if is_unpromised(&refined, scheme, face, corner)
+                            && (vertex as usize) < topology.vertex_count() =>
+                        {
+                            Kind::Checked(sector)
+                        }
                         _ if is_cusp(&refined, face, corner) => Kind::Cusp(sector),
                         _ if closing.is_some() => Kind::Closing,
                         _ => Kind::Limit,
@@ -167,7 +172,7 @@ impl Rows<'_> {
                 .entry(place.vertex)
                 .or_insert_with(|| position.clone());
             points.push(match place.kind {
-                Kind::Single => Row::Firm([position, du, dv]),
+                Kind::Checked(_) => Row::Firm([position, du, dv]),
                 _ => Row::Limit([position, du, dv]),
             });
         }
@@ -179,32 +184,29 @@ impl Rows<'_> {
             let closing = closing.expect("places of this kind have them");
             self.push(&mut points, place.vertex, closing);
         }
-        let (first, single) = of_kind(|kind| *kind == Kind::Single);
-        points.begin(abi::POINTS_NEARBY, first);
-        for place in single {
-            self.push(
-                &mut points,
-                place.vertex,
-                self.nearby(place.face, place.vertex),
-            );
-        }
-        let (first, cusps) = of_kind(|kind| matches!(kind, Kind::Cusp(_)));
+        let (first_checked, checked) = of_kind(|kind| matches!(kind, Kind::Checked(_)));
+        let (first_cusp, cusps) = of_kind(|kind| matches!(kind, Kind::Cusp(_)));
         let faces = |place: &Place| match &place.kind {
-            Kind::Cusp(faces) => faces.clone(),
-            _ => Vec::new(),
+            Kind::Checked(faces) | Kind::Cusp(faces) => faces.clone(),
+            Kind::Limit | Kind::Closing => Vec::new(),
         };
         let mut next = places.len() as u32;
         points.begin(abi::POINTS_LIMIT, next);
-        for place in &cusps {
+        for place in checked.iter().chain(&cusps) {
             for face in faces(place) {
                 self.push(&mut points, place.vertex, self.nearby(face, place.vertex));
             }
         }
-        points.begin(abi::POINTS_NORMALS, first);
-        for place in cusps {
-            let numbers = next..next + faces(place).len() as u32;
-            next = numbers.end;
-            points.push(Row::Normals(&numbers.map(|face| (face, 1.0)).collect()));
+        for (kind, first, places) in [
+            (abi::POINTS_NEARBY, first_checked, checked),
+            (abi::POINTS_NORMALS, first_cusp, cusps),
+        ] {
+            points.begin(kind, first);
+            for place in places {
+                let numbers = next..next + faces(place).len() as u32;
+                next = numbers.end;
+                points.push(Row::Normals(&numbers.map(|face| (face, 1.0)).collect()));
+            }
         }
         points
     }

@@ -8,12 +8,6 @@ use glam::Vec3;
 use crate::abi;
 use crate::method::quadtree::twin::{Use, compensated_sum};
 use crate::method::surface::{Tangents, UNIT, reach};
-use crate::method::unit::unit;
-
-/// At the corner of a single face: the least sine between the limit's tangents, and the greatest distance between its normal and that nearby, at
-/// which the limit counts; squared. As in `subdivision/normals.rs`.
-const FIRM: f32 = 1.0 / 256.0;
-const NEAR: f32 = 0.25;
 
 /// Sums over a ring. Compensated, they err by some units of rounding of the absolute sum; the ring's own positions by one each.
 fn tangents(ring: &[Vec3], weights: &[f32]) -> Tangents {
@@ -37,12 +31,6 @@ fn tangents(ring: &[Vec3], weights: &[f32]) -> Tangents {
     }
 }
 
-/// Whether tangents are far from parallel.
-fn are_firm(tangents: &Tangents) -> bool {
-    let normal = unit(tangents.sums[0]).cross(unit(tangents.sums[1]));
-    normal.dot(normal) >= FIRM
-}
-
 impl Use<'_> {
     /// The normal at a corner of the patch.
     pub(super) fn vertex_normal(&self, vertices: &[Vec3], flags: u32) -> Vec3 {
@@ -62,8 +50,7 @@ impl Use<'_> {
             }
             None => limit,
             Some(nearby) => {
-                let near = limit - nearby;
-                let firm = are_firm(&tangents) && near.dot(near) < NEAR;
+                let firm = tangents.are_firm() && Tangents::are_near(limit, nearby);
                 if nearby == Vec3::ZERO || firm {
                     limit
                 } else {

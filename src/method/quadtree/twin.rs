@@ -108,7 +108,7 @@ pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface
 }
 
 /// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first
-/// vertex: tangents deep in the tree are differences of small numbers then, instead of small differences of large ones.
+/// vertex: so sums err by what the ring's own size has for rounding, wherever it is.
 pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let plans = plans(pass);
     let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[3]);
@@ -232,6 +232,7 @@ impl Use<'_> {
     }
 
     fn evaluate(&self, ring: &[Vec3], uv: Vec2, side: u32) -> Surface {
+        let quarter = u32::from(uv.x >= 0.5) + 2 * u32::from(uv.y >= 0.5);
         let leaf = walk(self.plans, self.border.roots[self.number], uv);
         let Leaf {
             points,
@@ -246,11 +247,24 @@ impl Use<'_> {
             v = CURVE;
         }
         let points = points + 16 * side;
-        bspline(u, v, scale, |x, y| {
+        let surface = bspline(u, v, scale, |x, y| {
             self.point(ring, self.plans.point(points + x as u32 + 4 * y as u32))
-        })
+        });
+        let base = if scale >= RELATIVE {
+            self.point(ring, quarter)
+        } else {
+            Vec3::ZERO
+        };
+        Surface {
+            position: surface.position + base,
+            ..surface
+        }
     }
 }
+
+/// From this scale on, which is that of depth 2, points are relative to the one of their plan's first points that has the number of their quarter of
+/// the tree (`plan/base.rs`).
+const RELATIVE: f32 = 4.0;
 
 /// Row 1 is the position on an edge, row 2 that plus the derivative across.
 const CURVE: Basis<f32> = Basis {

@@ -31,19 +31,23 @@ void blend(PointRow row, uint number) {
 // they are small beside the model. Zero where rounding may have made it.
 vec3 tangent_normal(PointRow row) {
     uint count = row.count & ~(ROW_OPEN | ROW_FIRM);
-    vec3 origin = count > 0u ? positions[terms[row.first + count - 1u].source] : vec3(0.0);
+    uint greatest = 0u;
+    for (uint i = 0u; i < count; ++i) greatest = max(greatest, greatest_exponent(positions[terms[row.first + i].source]));
+    float size = factor_for(greatest);
+    if (size == 0.0) return vec3(0.0);
+    vec3 origin = sized(positions[terms[row.first + count - 1u].source], size);
     precise vec3 du = vec3(0.0);
     precise vec3 dv = vec3(0.0);
     precise vec2 spread = vec2(0.0);
     precise vec2 total = vec2(0.0);
     for (uint i = 0u; i < count; ++i) {
         PointTerm term = terms[row.first + i];
-        precise vec3 spoke = positions[term.source] - origin;
-        vec2 size = abs(vec2(term.du, term.dv));
+        precise vec3 spoke = sized(positions[term.source], size) - origin;
+        vec2 weight = abs(vec2(term.du, term.dv));
         du = du + term.du * spoke;
         dv = dv + term.dv * spoke;
-        spread = spread + size * reach(spoke);
-        total = total + size;
+        spread = spread + weight * reach(spoke);
+        total = total + weight;
     }
     precise float roundings = float(count) + 4.0;
     precise vec2 errors = ROUNDING * (roundings * spread + reach(origin) * total);
@@ -84,21 +88,24 @@ void nearby(PointRow row, uint number) {
 void ring(PointRow row, uint number) {
     uint spokes = (row.count & ~ROW_OPEN) - 1u;
     uint faces = (row.count & ROW_OPEN) != 0u ? max(spokes, 1u) - 1u : spokes;
-    vec3 middle = points[terms[row.first].source].position;
+    uint greatest = 0u;
+    for (uint i = 0u; i <= spokes; ++i) greatest = max(greatest, greatest_exponent(points[terms[row.first + i].source].position));
+    float size = factor_for(greatest);
+    vec3 middle = sized(points[terms[row.first].source].position, size);
     precise vec3 normal = vec3(0.0);
     precise float spread = 0.0;
     precise float total = 0.0;
     for (uint i = 0u; i < faces; ++i) {
         uint next = i + 1u < spokes ? i + 1u : 0u;
-        precise vec3 a = points[terms[row.first + 1u + i].source].position - middle;
-        precise vec3 b = points[terms[row.first + 1u + next].source].position - middle;
+        precise vec3 a = sized(points[terms[row.first + 1u + i].source].position, size) - middle;
+        precise vec3 b = sized(points[terms[row.first + 1u + next].source].position, size) - middle;
         normal = normal + exact_cross(a, b);
         spread = spread + reach(a) * reach(b);
         total = total + (reach(a) + reach(b));
     }
     precise float roundings = float(faces) + 4.0;
     precise float error = ROUNDING * (2.0 * roundings * spread + 4.0 * reach(middle) * total);
-    points[number].normal = reach(normal) > CLEAR * error ? unit(normal) : vec3(0.0);
+    points[number].normal = size != 0.0 && reach(normal) > CLEAR * error ? unit(normal) : vec3(0.0);
 }
 
 void main() {

@@ -58,7 +58,7 @@
 //! # Ok::<(), hullform::Error>(())
 //! ```
 //!
-//! The [`manual`] says all of it in words. `examples/evaluate_limit.rs` asks for single points; `examples/headless_png.rs` is the integration guide, from the instance to the
+//! The [`manual`] says all of it in words. `examples/evaluate_limit.rs` asks for single points; `examples/headless_png/main.rs` is the integration guide, from the instance to the
 //! picture.
 //!
 //! # Features

@@ -5,11 +5,12 @@ mod common;
 
 use common::meshes::scatter;
 use glam::{DVec3, Vec2};
+use hullform::mesh::topology::FaceCorner;
 use hullform::mesh::{
     BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Model, Scheme, SchemeOptions,
 };
 use hullform::method::{MethodOptions, method};
-use hullform::subdivision::{LimitSurface, TangentPlane, tangent_plane};
+use hullform::subdivision::{LimitSurface, is_cusp};
 use hullform::tessellation::Domain;
 
 /// A curved sheet of 4 x 4 cells, of which some are cut into triangles or joined to hexagons. In the vertex in its middle up to four creases end, and in
@@ -69,7 +70,7 @@ fn corners(surface: &LimitSurface) -> Vec<Corner> {
     let topology = surface.topology();
     let mut found = Vec::new();
     for ptex in 0..surface.ptex_count() {
-        let (face, part) = surface.face_corner(ptex);
+        let (face, part) = surface.face_corner(ptex).expect("there is such a face");
         let n = topology.face(face).len();
         let triangle = n == 3 && surface.scheme().is_whole(3);
         let places: Vec<(u32, [f64; 2])> = match n {
@@ -83,8 +84,9 @@ fn corners(surface: &LimitSurface) -> Vec<Corner> {
             _ => vec![(part, [0.0, 0.0])],
         };
         for (corner, at) in places {
-            let alone = topology.fan(face, corner).faces.len() == 1;
-            let cusp = matches!(tangent_plane(topology, face, corner), TangentPlane::Face(_));
+            let fan = topology.fan_at(FaceCorner { face, corner });
+            let alone = fan.expect("there is such a corner").faces.len() == 1;
+            let cusp = is_cusp(topology, face, corner);
             let inwards = |x: f64| match x {
                 1.0 if triangle => 1.0 - 2.0 * STEP,
                 1.0 => 1.0 - STEP,

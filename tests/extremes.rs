@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::meshes::{cases, wild};
+use common::meshes::{cases, tagged_as, wild};
 use glam::{DVec3, Vec2, Vec3};
 use hullform::mesh::{
     ControlMesh, FaceVarying, Model, Scheme, Triangulation, read_obj_bytes, triangulated,
@@ -18,18 +18,7 @@ fn placed(mesh: &ControlMesh, to: impl Fn(DVec3) -> DVec3, stray: DVec3) -> Cont
     let positions: Vec<[f64; 3]> = positions.map(|p| p.to_array()).collect();
     let sizes: Vec<u32> = mesh.faces().map(|face| face.len() as u32).collect();
     let vertices: Vec<u32> = mesh.faces().flatten().copied().collect();
-    let mut builder = ControlMesh::builder(&positions, &sizes, &vertices).options(mesh.options());
-    for crease in mesh.creases() {
-        let [a, b] = crease.vertices;
-        builder = builder.crease(a, b, crease.sharpness);
-    }
-    for corner in mesh.corners() {
-        builder = builder.corner(corner.vertex, corner.sharpness);
-    }
-    for &hole in mesh.holes() {
-        builder = builder.hole(hole);
-    }
-    builder.build().expect("it was sound before")
+    tagged_as(mesh, ControlMesh::builder(&positions, &sizes, &vertices))
 }
 
 /// The mesh under a scheme, if that takes its tags, with positions that need few digits: so they can be moved without rounding.
@@ -178,7 +167,41 @@ fn a_mesh_without_extent_has_a_place() {
     let sample = sample.expect("no hole");
     // A sum of dozens of equal positions rounds in its last digits.
     assert!((sample.position - at).abs().max_element() <= 64.0 * f64::EPSILON * 1e200);
-    assert!(sample.normal().is_finite());
+    // There is no plane anywhere, neither of derivatives nor nearby, and no area of any face.
+    assert_eq!(sample.normal(), DVec3::ZERO);
+}
+
+/// What an engine writes as positions is not in local units, and may be of any size.
+#[test]
+fn vertices_of_any_size_have_the_same_normals() {
+    let meshes = ["cube", "ngons", "creased-torus"].map(|name| {
+        let mesh = hullform::mesh::builtin(name).expect("it is built in");
+        Scheme::ALL.map(|scheme| on_grid(mesh.clone(), scheme))
+    });
+    let mut compared = 0;
+    for model in meshes.into_iter().flatten().flatten().map(Model::new) {
+        for method in METHODS.iter().filter(|m| m.check_model(&model).is_ok()) {
+            let prepared = method.prepare(&model, MethodOptions::default());
+            let prepared = prepared.expect("it can draw the model");
+            let points = |exponent: i32| {
+                let vertices = model.positions().into_iter();
+                let vertices = vertices.map(|p| p * 2f32.powi(exponent)).collect();
+                prepared.controls(vertices).points
+            };
+            let one = points(0);
+            for exponent in [-90, -70, 70, 124] {
+                for (own, right) in points(exponent).iter().zip(&one) {
+                    let grown = right.position.map(|x| x * 2f32.powi(exponent));
+                    assert_eq!(own.position, grown, "{} 2^{exponent}", method.name);
+                    let bits = |normal: [f32; 3]| normal.map(f32::to_bits);
+                    let name = method.name;
+                    assert_eq!(bits(own.normal), bits(right.normal), "{name} 2^{exponent}");
+                    compared += usize::from(right.normal != [0.0; 3]);
+                }
+            }
+        }
+    }
+    assert!(compared > 5_000, "{compared} normals");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::fan_at;
 use common::meshes::scatter;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, INFINITE_SHARPNESS};
@@ -107,8 +108,8 @@ fn cases(n: u32) -> Vec<Case> {
 
 /// The vertices that shape a corner: the vertex, the far ends of its sharp edges, and of the edges and faces of its fan.
 fn ring(topology: &Topology, face: u32, corner: u32) -> Vec<u32> {
-    let fan = topology.fan(face, corner);
-    let other = |edge: u32| topology.edge(edge).other(fan.vertex);
+    let fan = fan_at(topology, face, corner);
+    let other = |edge: u32| topology.edges()[edge as usize].other(fan.vertex);
     let opposite = |&face: &u32| {
         let vertices = topology.face(face);
         let at = vertices.iter().position(|&v| v == fan.vertex);
@@ -265,7 +266,7 @@ fn the_plane_of_a_faces_edges_tends_to_the_tangent_plane() {
         // plane of crease and first mode nevertheless (Biermann, Levin, Zorin 2000), lest a smooth sector has several normals.
         let creased = case.name.starts_with("crease");
         for face in some_faces(case.faces) {
-            let sector = case.topology.fan(face, 0);
+            let sector = fan_at(&case.topology, face, 0);
             let inner = sector.at > 0 && sector.at + 1 < sector.faces.len();
             if creased && inner && sector.faces.len() > 4 {
                 continue;

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::meshes::{Recipe, cases, manifold, scatter, wild};
+use common::meshes::{Recipe, cases, manifold, scatter, tagged_as, wild};
 use glam::{DMat3, DVec3};
 use hullform::mesh::ControlMesh;
 use hullform::mesh::sharpness::is_infinite;
@@ -30,7 +30,7 @@ impl Limits {
         let topology = self.surface.topology();
         let edges = topology.face_edges(face);
         let corner = edges.iter().position(|&e| e == edge).expect("on the face");
-        let forward = topology.face(face)[corner] == topology.edge(edge).vertices[0];
+        let forward = topology.face(face)[corner] == topology.edges()[edge as usize].vertices[0];
         self.on_side(face, corner, if forward { t } else { 1.0 - t })
     }
 
@@ -109,19 +109,10 @@ fn rebuilt(
         })
         .collect();
     let sizes: Vec<u32> = faces.iter().map(|face| face.len() as u32).collect();
-    let mut builder =
-        ControlMesh::builder(&positions, &sizes, &faces.concat()).options(mesh.options());
-    for crease in mesh.creases() {
-        let [a, b] = crease.vertices;
-        builder = builder.crease(a, b, crease.sharpness);
-    }
-    for corner in mesh.corners() {
-        builder = builder.corner(corner.vertex, corner.sharpness);
-    }
-    for &hole in mesh.holes() {
-        builder = builder.hole(hole);
-    }
-    builder.build().expect("it was sound before")
+    tagged_as(
+        mesh,
+        ControlMesh::builder(&positions, &sizes, &faces.concat()),
+    )
 }
 
 const PLACES: [(f64, f64); 7] = [
@@ -160,7 +151,7 @@ proptest! {
     fn normals_agree_across_every_edge_that_is_not_infinitely_sharp(recipe in wild()) {
         let limits = Limits::of(&recipe.mesh());
         for (edge, t, [a, b]) in limits.shared_points() {
-            let sharp = |edge| is_infinite(limits.surface.topology().edge(edge).sharpness);
+            let sharp = |edge| is_infinite(limits.surface.topology().edges()[edge as usize].sharpness);
             let at_end = edge.is_some() && (t == 0.0 || t == 1.0);
             if edge.is_some_and(sharp) || at_end || !has_normal(&a) || !has_normal(&b) {
                 continue;
@@ -199,7 +190,7 @@ proptest! {
         let (before, after) = (LimitSurface::new(&mesh), LimitSurface::new(&turned));
         let offsets = mesh.ptex_offsets();
         for (ptex, (u, v)) in (0..before.ptex_count()).flat_map(|i| PLACES.map(|at| (i, at))) {
-            let (face, corner) = before.face_corner(ptex);
+            let (face, corner) = before.face_corner(ptex).expect("it is a ptex face");
             let (arity, turn) = (mesh.face(face as usize).len(), turn(face as usize));
             let (ptex_after, [x, y]) = if arity == 4 {
                 (ptex, turned_uv([u, v], turn))

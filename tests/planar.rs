@@ -96,7 +96,7 @@ fn the_limit_of_a_planar_mesh_has_the_planes_normal() {
             let planar = planar(seed, scheme);
             let surface = LimitSurface::new(&planar.mesh);
             for ptex in 0..surface.ptex_count() {
-                let (face, _) = surface.face_corner(ptex);
+                let (face, _) = surface.face_corner(ptex).expect("it is a ptex face");
                 let triangle = planar.mesh.face(face as usize).len() == 3 && scheme.is_whole(3);
                 for [u, v] in PLACES {
                     if is_outside(triangle, [u, v]) {

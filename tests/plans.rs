@@ -17,6 +17,14 @@ use hullform::subdivision::{Blend, LimitSurface};
 use hullform::tessellation::{Domain, Levels, required_level};
 use proptest::prelude::*;
 
+fn of_quad(topology: &Topology, face: u32) -> Ring {
+    Ring::of_quad(topology, face).expect("it is a quad")
+}
+
+fn from_corner(topology: &Topology, face: u32, start: u32) -> Ring {
+    Ring::from_corner(topology, face, start).expect("it is a corner")
+}
+
 /// The ring of every quad and of every n-gon's corner of a mesh, with its ptex number.
 fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
     let mut rings = Vec::new();
@@ -24,11 +32,9 @@ fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
         let arity = topology.face(face).len() as u32;
         let first = rings.len();
         if arity == 4 {
-            rings.push((first, Ring::of_quad(topology, face)));
+            rings.push((first, of_quad(topology, face)));
         } else {
-            rings.extend(
-                (0..arity).map(|i| (first + i as usize, Ring::from_corner(topology, face, i))),
-            );
+            rings.extend((0..arity).map(|i| (first + i as usize, from_corner(topology, face, i))));
         }
     }
     rings
@@ -40,12 +46,14 @@ fn plans(mesh: &ControlMesh, options: PlanOptions) -> Vec<Plan> {
     for (_, ring) in rings(&Topology::new(mesh)) {
         catalogue.number(ring.configuration);
     }
-    catalogue.build(options)
+    catalogue.build(options).expect("the options are sound")
 }
 
 fn packed(plans: &[Plan]) -> PackedPlans {
     let mut packed = PackedPlans::default();
-    plans.iter().for_each(|plan| packed.push(plan));
+    for plan in plans {
+        packed.push(plan).expect("it is of a size");
+    }
     packed
 }
 
@@ -108,8 +116,11 @@ fn able(model: &Model) -> impl Iterator<Item = &'static Method> + '_ {
 /// The points that the evaluation at (u, v) reads; None where it stops at an extraordinary vertex.
 fn points_read(packed: &PackedPlans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
     let plans = packed.view();
-    let leaf = walk(plans, packed.headers[plan as usize].root, uv);
-    let point = |i: u32| plans.point(leaf.points + i);
+    let leaf = walk(plans, packed.headers[plan as usize].root, uv).expect("it is packed");
+    let point = |i: u32| {
+        let point = plans.point(leaf.points + i);
+        point.expect("a leaf has its points")
+    };
     (leaf.kind != abi::NODE_EXTRAORDINARY).then(|| (0..16).map(point).collect())
 }
 
@@ -194,9 +205,9 @@ fn hold(mesh: &ControlMesh, options: PlanOptions, levels: &[u32]) {
 fn hold_edges(mesh: &ControlMesh, options: PlanOptions, levels: &[u32]) {
     let topology = Topology::new(mesh);
     for edge in 0..topology.edge_count() as u32 {
-        let ring = Ring::of_edge(&topology, edge);
+        let ring = Ring::of_edge(&topology, edge).expect("it is an edge");
         let EdgePlan { plan, sides } =
-            EdgePlan::build(&ring.configuration, EdgeKind::Whole, options);
+            EdgePlan::build(&ring.configuration, EdgeKind::Whole, options).expect("sound");
         hold_sums(&plan);
         hold_tree(&plan, 2);
         assert!(sides.is_empty() || sides.len() == topology.edge_faces(edge).len());
@@ -228,11 +239,11 @@ proptest! {
         let mesh = recipe.mesh();
         let truth = LimitSurface::new(&mesh);
         for ptex in 0..truth.ptex_count() {
-            let (face, corner) = truth.face_corner(ptex);
+            let (face, corner) = truth.face_corner(ptex).expect("it is a ptex face");
             let Some(expected) = truth.evaluate(ptex, 0.0, 0.0) else { continue };
             let vertex = mesh.face(face as usize)[corner as usize];
-            let ring = Ring::of_vertex(truth.topology(), vertex);
-            let VertexPlan { plan, sides, .. } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default());
+            let ring = Ring::of_vertex(truth.topology(), vertex).expect("a face has it");
+            let VertexPlan { plan, sides, .. } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default()).expect("sound");
             let positions: Vec<DVec3> = ring.vertices.iter().map(|&v| mesh.positions()[v as usize]).collect();
             prop_assert_eq!((plan.ring_size, sides.len()), (positions.len(), ring.faces.len()));
             let weights = plan.stencils[0].weights.iter().enumerate();
@@ -240,7 +251,7 @@ proptest! {
             prop_assert!(limit.distance(expected.position) < 1e-12 * (1.0 + expected.position.length()));
         }
         for (_, ring) in rings(truth.topology()) {
-            let again = Ring::from_corner(&ring.configuration.topology(), 0, 0).configuration;
+            let again = from_corner(&ring.configuration.topology(), 0, 0).configuration;
             prop_assert_eq!(&again, &ring.configuration);
         }
     }
@@ -250,7 +261,8 @@ proptest! {
     fn every_method_makes_patches_of_each_ptex_face_that_is_no_hole(recipe in manifold()) {
         let model = Model::new(recipe.mesh());
         let truth = LimitSurface::new(model.mesh());
-        let expected = (0..truth.ptex_count() as u32).filter(|&ptex| !model.topology().is_hole(truth.face_corner(ptex as usize).0));
+        let is_hole = |ptex: u32| truth.face_corner(ptex as usize).is_some_and(|(face, _)| model.topology().is_hole(face));
+        let expected = (0..truth.ptex_count() as u32).filter(|&ptex| !is_hole(ptex));
         let expected: Vec<u32> = expected.collect();
         for method in able(&model) {
             let prepared = method.prepare(&model, PlanOptions::default()).expect("sound options");
@@ -352,7 +364,7 @@ fn creased_sheet(turn: usize) -> ControlMesh {
 fn a_creased_face_has_the_same_plan_however_it_is_turned() {
     let configuration = |turn| {
         let topology = Topology::new(&creased_sheet(turn));
-        Ring::of_quad(&topology, 12).configuration
+        of_quad(&topology, 12).configuration
     };
     for turn in 1..4 {
         assert_eq!(configuration(turn), configuration(0));

@@ -7,6 +7,7 @@ mod common;
 
 use std::path::Path;
 
+use common::fan_at;
 use glam::DVec3;
 use hullform::mesh::sharpness::is_infinite;
 use hullform::mesh::topology::Topology;
@@ -88,7 +89,9 @@ fn vertex_at(topology: &Topology, (face, corner): (u32, u32), uv: [f64; 2]) -> O
 
 fn corner(surface: &LimitSurface, ptex: usize, uv: [f64; 2]) -> Corner {
     let topology = surface.topology();
-    let Some((face, corner)) = vertex_at(topology, surface.face_corner(ptex), uv) else {
+    let at = surface.face_corner(ptex);
+    let at = at.and_then(|at| vertex_at(topology, at, uv));
+    let Some((face, corner)) = at else {
         // The centre of an n-gon, the middle of one of its edges, or no corner at all.
         return Corner {
             extraordinary: uv == [1.0, 1.0],
@@ -99,10 +102,10 @@ fn corner(surface: &LimitSurface, ptex: usize, uv: [f64; 2]) -> Corner {
     let edges = topology.sharp_edges(vertex);
     // What is semi-sharp has decayed in the limit.
     let sharp = edges
-        .filter(|&edge| is_infinite(topology.edge(edge).sharpness))
+        .filter(|&edge| is_infinite(topology.edges()[edge as usize].sharpness))
         .count();
     let sharp_vertex = is_infinite(topology.vertex_sharpness(vertex));
-    let faces = topology.fan(face, corner).faces.len();
+    let faces = fan_at(topology, face, corner).faces.len();
     let dart = sharp == 1 && !sharp_vertex;
     let (inside, beside) = match is_whole_triangle(topology, face) {
         true => (6, 3),

@@ -15,8 +15,7 @@ vec3 edge_point(Point a, Point b) {
 
 // The control point of the quadratic between two corners (section 3.3): the mean normal, mirrored at the plane across the edge.
 vec3 edge_normal(Point a, Point b) {
-    precise vec3 apart = b.position - a.position;
-    vec3 along = unit(apart);
+    vec3 along = direction(a.position, b.position);
     precise vec3 sum = a.normal + b.normal;
     precise vec3 mirrored = sum - (2.0 * exact_dot(along, sum)) * along;
     return unit(mirrored);

@@ -84,21 +84,28 @@ Point weighted(TableFace face, Shares shares) {
 }
 
 // The normal from tangents (section II-C) at each point of the lattice, linear between. Their weights sum to zero, so they are sums of
-// differences, which lose less.
+// differences, which lose less; zero where rounding may have made them. Each spoke errs by the rounding of both its ends.
 vec3 limit_normal(TableFace face, Shares shares) {
     vec3 origin = points[controls[face.controls]].position;
     uint rows = row_count(shares);
+    precise float roundings = float(face.count) + 4.0;
     precise vec3 normal = vec3(0.0);
     for (uint k = 0u; k < rows; ++k) {
         uint first = face.weights + 2u * shares.rows[k] * face.count;
         precise vec3 du = vec3(0.0);
         precise vec3 dv = vec3(0.0);
+        precise vec2 spread = vec2(0.0);
+        precise vec2 total = vec2(0.0);
         for (uint i = face.count; i-- > 0u;) {
             precise vec3 spoke = points[controls[face.controls + i]].position - origin;
-            du += weights[first + i] * spoke;
-            dv += weights[first + face.count + i] * spoke;
+            vec2 weight = vec2(weights[first + i], weights[first + face.count + i]);
+            du += weight.x * spoke;
+            dv += weight.y * spoke;
+            spread += abs(weight) * reach(spoke);
+            total += abs(weight);
         }
-        normal += shares.shares[k] * surface_normal(Surface(origin, du, dv));
+        precise vec2 errors = ROUNDING * (roundings * spread + (4.0 * reach(origin)) * total);
+        normal += shares.shares[k] * clear_normal(Tangents(du, dv, errors));
     }
     return normal;
 }

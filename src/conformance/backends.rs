@@ -179,7 +179,9 @@ fn boundary(
         let faces = (side < topology.edge_count() as u32).then(|| topology.edge_faces(side));
         faces.is_some_and(|all| all.iter().filter(|&&face| !topology.is_hole(face)).count() == 1)
     };
-    let levels = list.levels(prepared, pass, patch);
+    let Some(levels) = list.levels(prepared, pass, patch) else {
+        return 0;
+    };
     let sides = prepared.passes[pass].sides[patch as usize];
     let edges = sides
         .into_iter()
@@ -197,6 +199,7 @@ fn triangles(prepared: &Prepared, list: &DrawList, frame: &Frame) -> Vec<Vec<[[u
         let of_patch = patches.flat_map(|own| {
             let uv: Vec<[f32; 2]> = own.iter().map(|vertex| vertex.uv).collect();
             let found = list.triangles(prepared, pass, own[0].patch_number, &uv);
+            let found = found.unwrap_or_default();
             let at = |i: u32| own[i as usize].position.map(f32::to_bits);
             found.into_iter().map(move |triangle| triangle.map(at))
         });
@@ -295,7 +298,7 @@ fn tags(
         }
         if context.is_wrong() {
             // Whatever the levels are, they are not those of the neighbours.
-            let all = prepared.outline.edges.len() as u32;
+            let all = prepared.outline.edges().len() as u32;
             for sides in prepared.passes[0].sides.iter_mut().step_by(2) {
                 *sides = sides.map(|side| (side + all / 2) % all);
             }

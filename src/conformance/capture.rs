@@ -1,5 +1,7 @@
 //! Our surfaces on the device, and every vertex that comes of them.
 
+mod cuts;
+
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -15,9 +17,11 @@ use crate::gpu::{
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
-use crate::method::{DepthTags, Displacement, Prepared, method};
-use crate::plan::PlanOptions;
+use crate::method::{DepthTags, Displacement, Prepared};
 use crate::tessellation::Spacing;
+
+use cuts::key;
+pub use cuts::{SPACINGS, bits, cut, over_patches, prepare, spacing_name, vertices};
 
 /// The side of the picture that surfaces are drawn into.
 pub const SIDE: u32 = 256;
@@ -359,6 +363,20 @@ impl Loaded<'_> {
         let expected = batches.iter().map(|batch| batch.vertices()).sum();
         let (captured, differing) = self.captured(expected)?;
         self.bench.saw(captured.len());
+        let patches = batches.first().map_or(0, |batch| {
+            let pass = &prepared.passes[batch.pass()];
+            pass.patches.len()
+        });
+        // They stand in order.
+        if let Some(last) = captured
+            .last()
+            .filter(|v| v.patch_number as usize >= patches)
+        {
+            let number = last.patch_number;
+            return Err(Error::Refused(format!(
+                "a vertex of patch {number} was captured, and there are {patches}"
+            )));
+        }
         Ok(Frame {
             passes: vec![captured],
             counters: self.surface().counters()?,
@@ -457,53 +475,6 @@ impl Drop for Loaded<'_> {
             unsafe { surface.destroy(device.raw(), &mut device.allocator()) };
         }
     }
-}
-
-fn key(vertex: &Captured) -> (u32, u32, u32) {
-    let [u, v] = vertex.uv.map(f32::to_bits);
-    (vertex.patch_number, v, u)
-}
-
-/// Everything about a vertex, for comparisons without tolerance.
-pub fn bits(vertex: &Captured) -> [u32; 9] {
-    bytemuck::cast(*vertex)
-}
-
-/// A cut.
-pub fn cut(level: f32, spacing: Spacing) -> Cut {
-    Cut { level, spacing }
-}
-
-/// Both spacings that our surfaces have.
-pub const SPACINGS: [Spacing; 2] = [Spacing::Equal, Spacing::FractionalEven];
-
-/// A spacing's name as case names have it.
-pub fn spacing_name(spacing: Spacing) -> &'static str {
-    match spacing {
-        Spacing::Equal => "equal",
-        Spacing::FractionalEven => "fractional_even",
-    }
-}
-
-/// A model made ready by the method of a name.
-pub fn prepare(model: &Model, name: &str) -> Result<Prepared> {
-    method(name)?.prepare(model, PlanOptions::default())
-}
-
-/// A sum over all patches of all passes.
-pub fn over_patches(prepared: &Prepared, value: impl Fn(usize, usize) -> u32) -> u32 {
-    let passes = prepared.passes.iter().enumerate();
-    passes
-        .flat_map(|(number, pass)| (0..pass.patches.len()).map(move |patch| (number, patch)))
-        .map(|(pass, patch)| value(pass, patch))
-        .sum()
-}
-
-/// The vertices that the tessellator makes of everything.
-pub fn vertices(prepared: &Prepared, cut: Cut) -> u32 {
-    over_patches(prepared, |pass, patch| {
-        cut.vertices(&prepared.passes[pass], patch)
-    })
 }
 
 /// Options for capturing everything at a cut, with room for vertices that come several times.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::conformance::Finding;
 use crate::gpu::Cut;
 use crate::mesh::Model;
-use crate::method::{Method, MethodOptions, Pass, Prepared};
+use crate::method::{Method, MethodOptions, Pass, Prepared, method, prepare_by_default};
 
 /// A model that a method prepared; a finding to skip with where the method refuses it, or where there is nothing to draw. A sound mesh fails
 /// no case because of that.
@@ -19,11 +19,24 @@ pub(super) fn prepared(
             "{} refuses this mesh: {error}",
             method.name
         ))),
-        Ok(prepared) if prepared.passes.is_empty() => Err(Finding::skip(
-            "there is nothing to draw: no face has a surface",
-        )),
+        Ok(prepared) if prepared.passes.is_empty() => Err(nothing()),
         Ok(prepared) => Ok(prepared),
     }
+}
+
+/// The same by the method that draws it when nobody names one, with that.
+pub(super) fn by_default(model: &Model) -> Result<(&'static Method, Prepared), Finding> {
+    let drawn = prepare_by_default(model, MethodOptions::default());
+    let drawn = drawn.and_then(|(prepared, _)| Ok((method(prepared.method)?, prepared)));
+    match drawn {
+        Err(error) => Err(Finding::skip(format!("no method takes this mesh: {error}"))),
+        Ok((_, prepared)) if prepared.passes.is_empty() => Err(nothing()),
+        Ok(drawn) => Ok(drawn),
+    }
+}
+
+fn nothing() -> Finding {
+    Finding::skip("there is nothing to draw: no face has a surface")
 }
 
 /// What is prepared, without the patches that `keep` does not choose, by pass and number.
@@ -92,7 +105,7 @@ mod tests {
     use crate::conformance::Status;
     use crate::conformance::meshes::{framed_polygon, sheet};
     use crate::mesh::{BoundaryInterpolation, ControlMesh, Scheme, SchemeOptions};
-    use crate::method::{METHODS, method};
+    use crate::method::METHODS;
 
     fn model(mesh: crate::error::Result<ControlMesh>) -> Model {
         Model::new(mesh.expect("it is sound"))

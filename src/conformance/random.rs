@@ -33,8 +33,8 @@ impl Random {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// One of `choices`.
-    pub fn one_of<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
+    /// One of `choices`, of which there is one.
+    pub(crate) fn one_of<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
         &choices[self.below(choices.len() as u32) as usize]
     }
 }

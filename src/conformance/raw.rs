@@ -9,7 +9,7 @@ use crate::conformance::modes::module;
 use crate::error::Result;
 use crate::gpu::ring::{RING_STAGES, cmd_ring_barrier};
 use crate::gpu::{Buffer, failed};
-use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
+use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery, StorageSet};
 
 /// Stages that see the buffers and the push constants.
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -48,10 +48,9 @@ pub struct Program {
 /// Storage buffers at bindings 0, 1, ... that the host sees, a picture, and pipelines over them.
 pub struct Raw<'a> {
     device: &'a Device,
-    set_layout: vk::DescriptorSetLayout,
     layout: vk::PipelineLayout,
-    pool: vk::DescriptorPool,
-    set: vk::DescriptorSet,
+    /// Of the buffers.
+    set: Option<StorageSet>,
     buffers: Vec<Buffer>,
     pipelines: Vec<vk::Pipeline>,
     target: OffscreenTarget,
@@ -63,10 +62,8 @@ impl<'a> Raw<'a> {
         // Null handles until made: if a step fails, what was made before it goes with `raw`.
         let mut raw = Raw {
             device,
-            set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
-            pool: vk::DescriptorPool::null(),
-            set: vk::DescriptorSet::null(),
+            set: None,
             buffers: Vec::new(),
             pipelines: Vec::new(),
             target: OffscreenTarget::with_encoding(device, side, side, 1, Encoding::Unorm)?,
@@ -74,8 +71,9 @@ impl<'a> Raw<'a> {
         for &size in sizes {
             raw.make_buffer(size)?;
         }
-        raw.make_layouts()?;
-        raw.make_set()?;
+        let set = StorageSet::new(device, STAGES, raw.buffers.iter())?;
+        raw.make_layout(&set)?;
+        raw.set = Some(set);
         Ok(raw)
     }
 
@@ -88,82 +86,34 @@ impl<'a> Raw<'a> {
         // SAFETY: device and allocator belong together; the usage needs no feature.
         let buffer =
             unsafe { Buffer::new(device, allocator, "conformance", size, usage, location) };
-        let mut buffer = buffer?;
-        buffer.write(0, &vec![0; size as usize]);
-        self.buffers.push(buffer);
-        Ok(())
+        self.buffers.push(buffer?);
+        let last = self.buffers.len() - 1;
+        self.buffers[last].write(0, &vec![0; size as usize])
     }
 
-    fn make_layouts(&mut self) -> Result<()> {
-        let device = self.device.raw();
-        let bindings: Vec<vk::DescriptorSetLayoutBinding> = (0..self.buffers.len() as u32)
-            .map(|binding| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(binding)
-                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                    .descriptor_count(1)
-                    .stage_flags(STAGES)
-            })
-            .collect();
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the device is live, here and below; the infos' pointers live through the calls.
-        self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
-            .map_err(failed("vkCreateDescriptorSetLayout"))?;
-        let sets = [self.set_layout];
+    fn make_layout(&mut self, set: &StorageSet) -> Result<()> {
+        let sets = [set.layout()];
         let constants = [vk::PushConstantRange::default()
             .stage_flags(STAGES)
             .size(CONSTANT_BYTES)];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&sets)
             .push_constant_ranges(&constants);
-        // SAFETY: as above.
-        self.layout = unsafe { device.create_pipeline_layout(&info, None) }
+        // SAFETY: the device is live; the info's pointers live through the call.
+        self.layout = unsafe { self.device.raw().create_pipeline_layout(&info, None) }
             .map_err(failed("vkCreatePipelineLayout"))?;
         Ok(())
     }
 
-    fn make_set(&mut self) -> Result<()> {
-        let device = self.device.raw();
-        let sizes = [vk::DescriptorPoolSize::default()
-            .ty(vk::DescriptorType::STORAGE_BUFFER)
-            .descriptor_count(self.buffers.len() as u32)];
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(1)
-            .pool_sizes(&sizes);
-        // SAFETY: the device is live, here and below.
-        self.pool = unsafe { device.create_descriptor_pool(&info, None) }
-            .map_err(failed("vkCreateDescriptorPool"))?;
-        let layouts = [self.set_layout];
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(self.pool)
-            .set_layouts(&layouts);
-        // SAFETY: the pool was made for one set of this layout.
-        self.set = unsafe { device.allocate_descriptor_sets(&info) }
-            .map_err(failed("vkAllocateDescriptorSets"))?[0];
-        for (binding, buffer) in (0..).zip(&self.buffers) {
-            let info = [vk::DescriptorBufferInfo::default()
-                .buffer(buffer.raw())
-                .range(vk::WHOLE_SIZE)];
-            let write = vk::WriteDescriptorSet::default()
-                .dst_set(self.set)
-                .dst_binding(binding)
-                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                .buffer_info(&info);
-            // SAFETY: set and buffer are of this device and in no use yet.
-            unsafe { device.update_descriptor_sets(&[write], &[]) };
-        }
-        Ok(())
-    }
-
     /// Replaces the beginning of a buffer.
-    pub fn write<T: bytemuck::NoUninit>(&mut self, binding: usize, data: &[T]) {
-        self.buffers[binding].write(0, bytemuck::cast_slice(data));
+    pub fn write<T: bytemuck::NoUninit>(&mut self, binding: usize, data: &[T]) -> Result<()> {
+        self.buffers[binding].write(0, bytemuck::cast_slice(data))
     }
 
     /// Fills a buffer with zeros.
-    pub fn clear(&mut self, binding: usize) {
+    pub fn clear(&mut self, binding: usize) -> Result<()> {
         let zeros = vec![0; self.buffers[binding].size() as usize];
-        self.buffers[binding].write(0, &zeros);
+        self.buffers[binding].write(0, &zeros)
     }
 
     /// The words of a buffer.
@@ -351,9 +301,7 @@ impl Drop for Raw<'_> {
             for pipeline in self.pipelines.drain(..) {
                 device.destroy_pipeline(pipeline, None);
             }
-            device.destroy_descriptor_pool(self.pool, None);
             device.destroy_pipeline_layout(self.layout, None);
-            device.destroy_descriptor_set_layout(self.set_layout, None);
             for buffer in self.buffers.drain(..) {
                 buffer.destroy(device, allocator);
             }
@@ -374,7 +322,9 @@ impl Recorder<'_> {
     pub fn bind<T: bytemuck::NoUninit>(&self, pipeline: vk::Pipeline, constants: &T) {
         let bytes = bytemuck::bytes_of(constants);
         let graphics = vk::PipelineBindPoint::GRAPHICS;
-        let (layout, sets) = (self.raw.layout, [self.raw.set]);
+        let layout = self.raw.layout;
+        let sets = self.raw.set.as_slice();
+        let sets: Vec<vk::DescriptorSet> = sets.iter().map(StorageSet::raw).collect();
         // SAFETY: recording inside of the pass that the pipeline was made for; all of one device.
         unsafe {
             let device = self.device;

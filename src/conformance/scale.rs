@@ -206,8 +206,8 @@ fn draw(context: &Context, load: Load) -> Result<Traces> {
         size_of::<[u32; 5]>() as u64,
     ];
     let mut raw = Raw::new(context.device()?, &sizes, SIDE)?;
-    raw.write(INDICES, &indices);
-    raw.write(ARGUMENTS, &load.arguments());
+    raw.write(INDICES, &indices)?;
+    raw.write(ARGUMENTS, &load.arguments())?;
     let pipeline = raw.pipeline(&Program {
         control: Cow::Borrowed(module("scale.tesc")?),
         evaluation: Cow::Borrowed(module("scale.tese")?),

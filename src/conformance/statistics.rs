@@ -14,7 +14,7 @@ use crate::conformance::{Case, Check, Context, Finding, Group, Status, models};
 use crate::error::Result;
 use crate::gpu::{Cut, Fill, Shading};
 use crate::mesh::{Model, builtin};
-use crate::method::{METHODS, MethodOptions, Prepared, method_for};
+use crate::method::{METHODS, Prepared};
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -85,10 +85,11 @@ fn model_cases(name: &str) -> Vec<Case> {
             let name = format!("statistics.model.{name}-{}", spacing_name(spacing));
             Case::new(name, RULE, SOURCE, move |context| {
                 let model = context.model(&model)?;
-                let method = method_for(model);
                 let cuts = [1.0, 3.0, 8.0].map(|level| cut(level, spacing));
-                match models::prepared(model, method, MethodOptions::default()) {
-                    Ok(_) => predicted(context, model, method.name, &cuts, models::bounded),
+                match models::by_default(model) {
+                    Ok((method, _)) => {
+                        predicted(context, model, method.name, &cuts, models::bounded)
+                    }
                     Err(skipped) => Ok(skipped),
                 }
             })
@@ -134,7 +135,7 @@ fn predicted(
         });
         let triangles = over_patches(&prepared, |pass, patch| {
             let levels = cut.levels(&prepared.passes[pass], patch);
-            levels.triangles(cut.spacing)
+            levels.map_or(0, |levels| levels.triangles(cut.spacing))
         });
         let patches = over_patches(&prepared, |_, _| 1) + u32::from(context.is_wrong());
         let evaluations = u64::from(vertices(&prepared, cut));

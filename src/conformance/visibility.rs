@@ -261,8 +261,8 @@ fn frames(context: &Context, form: Form) -> Result<Finding> {
     let mut check = Check::default();
     let mut compared = 0;
     for round in 0..FRAMES {
-        bed.raw.clear(COUNTERS);
-        bed.raw.clear(RESULTS);
+        bed.raw.clear(COUNTERS)?;
+        bed.raw.clear(RESULTS)?;
         let constants = Constants {
             round,
             room,

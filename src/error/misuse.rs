@@ -74,6 +74,40 @@ pub enum Misuse {
         /// How many control vertices there are.
         expected: usize,
     },
+    /// A plan was asked for of more than what a configuration tells of: of a face, say, of what surrounds a vertex.
+    #[error("the configuration is that of {given} corners, and the plan is of {needed}")]
+    Ring {
+        /// Around how many corners of a face the plan goes.
+        needed: u32,
+        /// Around how many the configuration does.
+        given: u32,
+    },
+    /// A plan with more control points than can be numbered. Only creases of sharpness 9 that are refined away come near.
+    #[error("a plan has {points} control points, and {greatest} can be numbered")]
+    PlanTooLarge {
+        /// How many it has.
+        points: usize,
+        /// How many are possible.
+        greatest: usize,
+    },
+    /// A triangle has a vertex that there is not.
+    #[error("a triangle has vertex {vertex} (from 0) of {count}")]
+    Index {
+        /// The number that it has.
+        vertex: u32,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// Bytes for a place in a buffer that the host does not see, or that is not there.
+    #[error("{bytes} bytes at {offset} of a buffer of which the host sees {size}")]
+    Outside {
+        /// How many.
+        bytes: usize,
+        /// Where to.
+        offset: u64,
+        /// How many bytes of the buffer the host sees.
+        size: usize,
+    },
     /// A depth tag that is no depth.
     #[error("the depth tag of control vertex {vertex} is {depth}, and depths are from 0 to 6")]
     Depth {

@@ -74,7 +74,8 @@ impl Bounds {
         let Some(most) = self.instance_vertices else {
             return u32::MAX;
         };
-        let greatest = (0..pass.patches.len()).map(|patch| cut.levels(pass, patch).greatest());
+        let levels = (0..pass.patches.len()).filter_map(|patch| cut.levels(pass, patch));
+        let greatest = levels.map(|levels| levels.greatest());
         let segments = cut.spacing.segments(greatest.fold(1.0, f32::max));
         patches_per_instance(most, segments)
     }
@@ -125,7 +126,7 @@ impl Bounds {
     /// Points and vertices of a patch.
     fn needs(&self, pass: &Pass, cut: Cut, patch: usize) -> [u32; 2] {
         let levels = cut.levels(pass, patch);
-        let vertices = self.backend.vertices(&levels, cut.spacing);
+        let vertices = levels.map_or(0, |levels| self.backend.vertices(&levels, cut.spacing));
         [cut.points(pass, patch), vertices]
     }
 }

@@ -14,34 +14,40 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// The tess levels of a patch.
-    pub fn levels(&self, pass: &Pass, patch: usize) -> Levels {
-        levels(
+    /// The tess levels of a patch; None where there is no such patch.
+    pub fn levels(&self, pass: &Pass, patch: usize) -> Option<Levels> {
+        let patch = pass.patches.get(patch)?;
+        let max_level = pass.max_level;
+        Some(levels(
             pass.domain,
-            &pass.patches[patch],
+            patch,
             self.level,
             self.spacing,
-            pass.max_level,
-        )
+            max_level,
+        ))
     }
 
-    /// The points that a patch needs in the ring.
+    /// The points that a patch needs in the ring; none where there is no such patch.
     pub fn points(&self, pass: &Pass, patch: usize) -> u32 {
-        pass.points(patch, self.plan_level(pass, patch))
+        let level = self.plan_level(pass, patch);
+        level.map_or(0, |level| pass.points(patch, level))
     }
 
-    /// The products of a weight and a vertex that these points take.
+    /// The products of a weight and a vertex that these points take; none where there is no such patch.
     pub fn products(&self, pass: &Pass, patch: usize) -> u64 {
-        pass.products(patch, self.plan_level(pass, patch))
+        let level = self.plan_level(pass, patch);
+        level.map_or(0, |level| pass.products(patch, level))
     }
 
     /// As the control shader has it: beside an n-gon the level may be more than what a plan of one level serves.
-    fn plan_level(&self, pass: &Pass, patch: usize) -> u32 {
-        required_level(&self.levels(pass, patch), abi::HIGHEST_LEVEL)
+    fn plan_level(&self, pass: &Pass, patch: usize) -> Option<u32> {
+        let level = |levels| required_level(&levels, abi::HIGHEST_LEVEL);
+        self.levels(pass, patch).map(level)
     }
 
-    /// The vertices that the tessellator makes of a patch.
+    /// The vertices that the tessellator makes of a patch; none where there is no such patch.
     pub fn vertices(&self, pass: &Pass, patch: usize) -> u32 {
-        self.levels(pass, patch).vertices(self.spacing)
+        let levels = self.levels(pass, patch);
+        levels.map_or(0, |levels| levels.vertices(self.spacing))
     }
 }

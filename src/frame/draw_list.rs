@@ -105,7 +105,7 @@ impl DrawList {
                 self.records[run.pass].extend(decided);
             }
             if patterns {
-                let levels = |patch| self.levels(prepared, run.pass, patch);
+                let levels = |patch| self.levels_of(prepared, run.pass, patch);
                 let (draws, instances) = all.arrange(run.patches(), levels);
                 self.instances[run.pass].extend(instances);
                 self.draws.push(draws);
@@ -126,7 +126,7 @@ impl DrawList {
         let mut next = 0;
         run.patches()
             .map(|patch| {
-                let levels = self.levels(prepared, run.pass, patch);
+                let levels = self.levels_of(prepared, run.pass, patch);
                 let slot = next;
                 next += self.cut.points(pass, patch as usize);
                 abi::PatchDraw {
@@ -186,14 +186,14 @@ impl DrawList {
         self.tagged.is_some()
     }
 
-    /// What is decided about each patch of a pass; empty where the cut says all.
+    /// What is decided about each patch of a pass; empty where the cut says all, or there is no such pass.
     pub fn records(&self, pass: usize) -> &[abi::PatchDraw] {
-        &self.records[pass]
+        self.records.get(pass).map_or(&[], Vec::as_slice)
     }
 
-    /// The patches of a pass in the order of instances; empty where no patterns are drawn.
+    /// The patches of a pass in the order of instances; empty where no patterns are drawn, or there is no such pass.
     pub fn instances(&self, pass: usize) -> &[u32] {
-        &self.instances[pass]
+        self.instances.get(pass).map_or(&[], Vec::as_slice)
     }
 
     /// Levels that ask for each of the refinement patterns that are drawn.
@@ -218,35 +218,45 @@ impl DrawList {
             && self.instance_vertices == instance_vertices
     }
 
-    /// The levels of a patch; `prepared` is what the list was made for.
-    pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Levels {
+    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch.
+    pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Option<Levels> {
         match &self.tagged {
-            Some(levels) => levels[pass][patch as usize],
-            None => self.cut.levels(&prepared.passes[pass], patch as usize),
+            Some(levels) => levels.get(pass)?.get(patch as usize).copied(),
+            None => self.cut.levels(prepared.passes.get(pass)?, patch as usize),
         }
     }
 
-    /// The vertices of a patch.
-    pub fn vertices(&self, prepared: &Prepared, pass: usize, patch: u32) -> u32 {
+    /// The same of a patch that there is.
+    fn levels_of(&self, prepared: &Prepared, pass: usize, patch: u32) -> Levels {
         let levels = self.levels(prepared, pass, patch);
+        levels.expect("runs are of the patches that were prepared")
+    }
+
+    /// The vertices of a patch; none where there is no such patch.
+    pub fn vertices(&self, prepared: &Prepared, pass: usize, patch: u32) -> u32 {
+        let Some(levels) = self.levels(prepared, pass, patch) else {
+            return 0;
+        };
         match self.options.backend {
             Backend::Tessellator => levels.vertices(self.cut.spacing),
             Backend::Pattern | Backend::Geometry => lattice_vertices(&levels),
         }
     }
 
-    /// The triangles of a patch: counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order. Vertices that are
-    /// not among them have no triangles.
+    /// The triangles of a patch: counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order. None where these are
+    /// not all that the patch has: triangles over the hole would be another surface. None, too, where there is no such patch.
     pub fn triangles(
         &self,
         prepared: &Prepared,
         pass: usize,
         patch: u32,
         uv: &[[f32; 2]],
-    ) -> Vec<[u32; 3]> {
-        let levels = self.levels(prepared, pass, patch);
+    ) -> Option<Vec<[u32; 3]>> {
+        let levels = self.levels(prepared, pass, patch)?;
         if self.options.backend == Backend::Tessellator {
-            return triangulate(levels.domain, uv);
+            let triangles = triangulate(levels.domain, uv);
+            let expected = levels.triangles(self.cut.spacing) as usize;
+            return (triangles.len() >= expected).then_some(triangles);
         }
         let segments = lattice_segments(&levels) as f32;
         let place = |at: &[f32; 2]| at.map(|x| (x * segments) as u32);
@@ -255,7 +265,7 @@ impl DrawList {
             let [a, b, c] = places.map(|place| numbers.get(&place).copied());
             Some([a?, b?, c?])
         };
-        pattern(&levels).into_iter().filter_map(numbered).collect()
+        pattern(&levels).into_iter().map(numbered).collect()
     }
 }
 
@@ -325,7 +335,7 @@ fn tagged_levels(
     if let Some((vertex, depth)) = tagged.find(|(_, depth)| !(0.0..=6.0).contains(depth)) {
         return Err(Error::Misuse(Misuse::Depth { vertex, depth }));
     }
-    let sides: Vec<f32> = prepared.outline.depths(tags);
+    let sides: Vec<f32> = prepared.outline.depths(tags)?;
     let level = |side: u32| backend.level_of(sides[side as usize]).min(cut.level);
     let of_pass = |pass: &Pass| {
         let patches = pass.patches.iter().zip(&pass.sides);

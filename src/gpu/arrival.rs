@@ -90,7 +90,9 @@ impl TessellatedSurface {
         match self.options.backend {
             Backend::Geometry if self.options.count_vertices => {
                 let levels = list.levels(&self.prepared, pass, patch);
-                Backend::Geometry.vertices(&levels, list.cut().spacing)
+                levels.map_or(0, |levels| {
+                    Backend::Geometry.vertices(&levels, list.cut().spacing)
+                })
             }
             _ => list.vertices(&self.prepared, pass, patch),
         }

@@ -1,6 +1,6 @@
 //! A buffer with memory of its own.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Misuse, Result};
 use crate::gpu::failed;
 use ash::vk;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
@@ -63,26 +63,34 @@ impl Buffer {
         self.size
     }
 
-    /// The contents, of a buffer that the host can see. gpu-allocator's mapped memory is coherent: nothing to flush.
+    /// The contents; empty where the host cannot see the buffer, as with [`MemoryLocation::GpuOnly`]. gpu-allocator's mapped memory is coherent: nothing to
+    /// flush.
     ///
     /// Meaningful once the GPU's writes are finished and made visible: a barrier to `HOST`/`HOST_READ`, then a fence.
-    ///
-    /// # Panics
-    /// If the buffer was made with [`MemoryLocation::GpuOnly`] and is not mapped.
     pub fn bytes(&self) -> &[u8] {
         let mapped = self.allocation.mapped_slice();
-        &mapped.expect("only host-visible buffers are read by the host")[..self.size as usize]
+        mapped.map_or(&[], |mapped| &mapped[..self.size as usize])
     }
 
     /// Copies `bytes` to `offset`. A submission after this call sees them (Vulkan, "Host Write Ordering Guarantees").
     ///
-    /// # Panics
-    /// If the buffer is not mapped, or the bytes do not fit.
-    pub fn write(&mut self, offset: u64, bytes: &[u8]) {
-        let (size, offset) = (self.size as usize, offset as usize);
+    /// # Errors
+    /// [`Misuse::Outside`] where the host does not see so much of the buffer.
+    pub fn write(&mut self, offset: u64, bytes: &[u8]) -> Result<()> {
         let mapped = self.allocation.mapped_slice_mut();
-        let mapped = mapped.expect("only host-visible buffers are written by the host");
-        mapped[..size][offset..][..bytes.len()].copy_from_slice(bytes);
+        let seen = mapped.map_or(&mut [][..], |mapped| &mut mapped[..self.size as usize]);
+        let size = seen.len();
+        let place = usize::try_from(offset).ok().and_then(|start| {
+            let end = start.checked_add(bytes.len())?;
+            seen.get_mut(start..end)
+        });
+        let place = place.ok_or(Error::Misuse(Misuse::Outside {
+            bytes: bytes.len(),
+            offset,
+            size,
+        }))?;
+        place.copy_from_slice(bytes);
+        Ok(())
     }
 
     /// Gives buffer and memory back.

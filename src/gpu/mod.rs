@@ -4,6 +4,7 @@
 
 mod arrival;
 pub mod buffer;
+mod buffers;
 mod call;
 mod draw;
 pub mod driver;

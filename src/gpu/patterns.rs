@@ -54,7 +54,7 @@ impl Patterns {
             }
         }
         if let Some(buffer) = &mut self.buffer {
-            buffer.write(0, bytes);
+            buffer.write(0, bytes)?;
         }
         Ok(())
     }

@@ -173,9 +173,9 @@ impl Pipelines {
             .ok_or(Error::Misuse(Misuse::OtherPipelines))
     }
 
-    /// The pipeline of a pass.
-    pub fn get(&self, pass: usize) -> vk::Pipeline {
-        self.pipelines[pass]
+    /// The pipeline of a pass; None where there is no such pass.
+    pub fn get(&self, pass: usize) -> Option<vk::Pipeline> {
+        self.pipelines.get(pass).copied()
     }
 
     /// Destroys them.

@@ -36,23 +36,20 @@ impl Staging {
         let (size, usage) = (bytes.len() as u64, vk::BufferUsageFlags::TRANSFER_SRC);
         let location = MemoryLocation::CpuToGpu;
         // SAFETY: this function's contract.
-        let mut buffer =
-            unsafe { Buffer::new(device, allocator, "staging", size, usage, location)? };
-        buffer.write(0, &bytes);
-        self.buffer = Some(buffer);
+        let buffer = unsafe { Buffer::new(device, allocator, "staging", size, usage, location)? };
         self.changed = true;
-        Ok(())
+        self.buffer.insert(buffer).write(0, &bytes)
     }
 
     /// Replaces what will be copied to a buffer by as many bytes.
-    pub fn replace(&mut self, number: usize, bytes: &[u8]) {
+    pub fn replace(&mut self, number: usize, bytes: &[u8]) -> Result<()> {
         let copy = self.copies.iter().find(|(to, _)| *to == number);
         let copy = copy.expect("only what was added is replaced").1;
         debug_assert_eq!(bytes.len() as u64, copy.size);
         let buffer = self.buffer.as_mut();
         let buffer = buffer.expect("it is filled as long as the surface lives");
-        buffer.write(copy.src_offset, bytes);
         self.changed = true;
+        buffer.write(copy.src_offset, bytes)
     }
 
     /// The copies that bring the device what has changed since this was asked last.

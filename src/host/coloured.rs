@@ -4,9 +4,9 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use gpu_allocator::MemoryLocation;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Misuse, Result};
 use crate::gpu::{Buffer, failed, shaders};
-use crate::host::{Device, OffscreenTarget};
+use crate::host::{Device, OffscreenTarget, StorageSet};
 
 /// A projected vertex and its colour, as `glsl/coloured.vert` takes them.
 #[repr(C)]
@@ -26,9 +26,8 @@ pub struct ColouredTriangles {
     device: Device,
     /// Vertices, indices, marks.
     buffers: Vec<Buffer>,
-    set_layout: vk::DescriptorSetLayout,
-    pool: vk::DescriptorPool,
-    set: vk::DescriptorSet,
+    /// Of the marks.
+    set: Option<StorageSet>,
     layout: vk::PipelineLayout,
     pipeline: vk::Pipeline,
     indices: u32,
@@ -43,7 +42,7 @@ impl ColouredTriangles {
     /// Brings triangles to the device, to be drawn into `target` or one like it.
     ///
     /// # Errors
-    /// [`Error::Refused`] if there are more vertices than the device's indices reach.
+    /// [`Error::Refused`] if there are more vertices than the device's indices reach; [`Misuse::Index`] for a triangle of others.
     pub fn new(
         device: &Device,
         target: &OffscreenTarget,
@@ -59,13 +58,16 @@ impl ColouredTriangles {
                 vertices.len()
             )));
         }
+        let mut corners = triangles.iter().flatten().copied();
+        if let Some(vertex) = corners.find(|&vertex| vertex as usize >= vertices.len()) {
+            let count = vertices.len();
+            return Err(Error::Misuse(Misuse::Index { vertex, count }));
+        }
         // Null and empty until made: if a step fails, what was made before it goes with `drawn`.
         let mut drawn = ColouredTriangles {
             device: device.clone(),
             buffers: Vec::new(),
-            set_layout: vk::DescriptorSetLayout::null(),
-            pool: vk::DescriptorPool::null(),
-            set: vk::DescriptorSet::null(),
+            set: None,
             layout: vk::PipelineLayout::null(),
             pipeline: vk::Pipeline::null(),
             indices: 3 * triangles.len() as u32,
@@ -81,8 +83,10 @@ impl ColouredTriangles {
         drawn.add_buffer("indices", Usage::INDEX_BUFFER, CpuToGpu, of_triangles)?;
         let marks = vec![0; 4 * vertices.len().max(1)];
         drawn.add_buffer("marks", Usage::STORAGE_BUFFER, GpuToCpu, &marks)?;
-        drawn.make_set()?;
-        drawn.make_pipeline(target)?;
+        let marks = drawn.buffers[MARKS..].iter();
+        let set = StorageSet::new(device, vk::ShaderStageFlags::VERTEX, marks)?;
+        drawn.make_pipeline(target, &set)?;
+        drawn.set = Some(set);
         Ok(drawn)
     }
 
@@ -93,11 +97,13 @@ impl ColouredTriangles {
     /// stay alive until the commands have finished. Drawn once: marks are not taken back.
     pub unsafe fn cmd_draw(&self, cmd: vk::CommandBuffer) {
         let device = self.device.raw();
+        let sets = self.set.as_slice();
+        let sets: Vec<vk::DescriptorSet> = sets.iter().map(StorageSet::raw).collect();
         // SAFETY: this function's contract; every index is below the number of vertices, as the caller gave them.
         unsafe {
             let graphics = vk::PipelineBindPoint::GRAPHICS;
             device.cmd_bind_pipeline(cmd, graphics, self.pipeline);
-            device.cmd_bind_descriptor_sets(cmd, graphics, self.layout, 0, &[self.set], &[]);
+            device.cmd_bind_descriptor_sets(cmd, graphics, self.layout, 0, &sets, &[]);
             device.cmd_bind_vertex_buffers(cmd, 0, &[self.buffers[0].raw()], &[0]);
             device.cmd_bind_index_buffer(cmd, self.buffers[1].raw(), 0, vk::IndexType::UINT32);
             device.cmd_draw_indexed(cmd, self.indices, 1, 0, 0, 0);
@@ -148,55 +154,15 @@ impl ColouredTriangles {
         let device = self.device.raw();
         let allocator = &mut self.device.allocator();
         // SAFETY: device and allocator belong together; the usage needs no feature.
-        let mut buffer = unsafe { Buffer::new(device, allocator, name, size, usage, location) }?;
-        buffer.write(0, bytes);
+        let buffer = unsafe { Buffer::new(device, allocator, name, size, usage, location) }?;
         self.buffers.push(buffer);
-        Ok(())
+        let last = self.buffers.len() - 1;
+        self.buffers[last].write(0, bytes)
     }
 
-    /// The set with the marks.
-    fn make_set(&mut self) -> Result<()> {
+    fn make_pipeline(&mut self, target: &OffscreenTarget, set: &StorageSet) -> Result<()> {
         let device = self.device.raw();
-        let kind = vk::DescriptorType::STORAGE_BUFFER;
-        let bindings = [vk::DescriptorSetLayoutBinding::default()
-            .descriptor_type(kind)
-            .descriptor_count(1)
-            .stage_flags(vk::ShaderStageFlags::VERTEX)];
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the device is live, here and below.
-        self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
-            .map_err(failed("vkCreateDescriptorSetLayout"))?;
-        let sizes = [vk::DescriptorPoolSize::default()
-            .ty(kind)
-            .descriptor_count(1)];
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(1)
-            .pool_sizes(&sizes);
-        // SAFETY: as above.
-        self.pool = unsafe { device.create_descriptor_pool(&info, None) }
-            .map_err(failed("vkCreateDescriptorPool"))?;
-        let layouts = [self.set_layout];
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(self.pool)
-            .set_layouts(&layouts);
-        // SAFETY: the pool was made for one set of this layout.
-        self.set = unsafe { device.allocate_descriptor_sets(&info) }
-            .map_err(failed("vkAllocateDescriptorSets"))?[0];
-        let marks = [vk::DescriptorBufferInfo::default()
-            .buffer(self.buffers[MARKS].raw())
-            .range(vk::WHOLE_SIZE)];
-        let write = vk::WriteDescriptorSet::default()
-            .dst_set(self.set)
-            .descriptor_type(kind)
-            .buffer_info(&marks);
-        // SAFETY: set and buffer are of this device and in no use yet.
-        unsafe { device.update_descriptor_sets(&[write], &[]) };
-        Ok(())
-    }
-
-    fn make_pipeline(&mut self, target: &OffscreenTarget) -> Result<()> {
-        let device = self.device.raw();
-        let sets = [self.set_layout];
+        let sets = [set.layout()];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         // SAFETY: the device is live.
         self.layout = unsafe { device.create_pipeline_layout(&info, None) }
@@ -224,8 +190,6 @@ impl Drop for ColouredTriangles {
         unsafe {
             device.destroy_pipeline(self.pipeline, None);
             device.destroy_pipeline_layout(self.layout, None);
-            device.destroy_descriptor_pool(self.pool, None);
-            device.destroy_descriptor_set_layout(self.set_layout, None);
             for buffer in self.buffers.drain(..) {
                 buffer.destroy(device, &mut allocator);
             }

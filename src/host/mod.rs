@@ -7,6 +7,7 @@ mod instance;
 mod offscreen;
 mod render_pass;
 mod statistics;
+mod storage_set;
 mod timestamps;
 
 pub use choice::{DeviceInfo, devices};
@@ -15,4 +16,5 @@ pub use device::Device;
 pub use instance::Instance;
 pub use offscreen::{Encoding, OffscreenTarget};
 pub use statistics::StatisticsQuery;
+pub(crate) use storage_set::StorageSet;
 pub use timestamps::TimestampQuery;

@@ -146,14 +146,17 @@ impl ControlMesh {
         self.face_offsets.len() - 1
     }
 
-    /// The vertices of face `face`, in file order.
+    /// The vertices of face `face`, in file order; none where there is no such face.
     pub fn face(&self, face: usize) -> &[u32] {
         &self.face_vertices[self.corner_range(face)]
     }
 
-    /// Where the corners of face `face` stand in arrays with one entry a face corner.
+    /// Where the corners of face `face` stand in arrays with one entry a face corner; nowhere if there is no such face.
     pub fn corner_range(&self, face: usize) -> std::ops::Range<usize> {
-        self.face_offsets[face] as usize..self.face_offsets[face + 1] as usize
+        match self.face_offsets.get(face..) {
+            Some(&[start, end, ..]) => start as usize..end as usize,
+            _ => 0..0,
+        }
     }
 
     /// The vertices of every face in file order.

@@ -15,7 +15,7 @@ use crate::mesh::control_mesh::ordered;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
-pub use connect::Lists;
+use connect::{Lists, list};
 
 /// An edge and how sharp it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,8 @@ pub struct FaceCorner {
 }
 
 /// Faces, edges, vertices, how they touch, and their sharpness.
+///
+/// What is asked of a number that no face, edge or vertex has is answered as of one that touches nothing: by an empty list, no sharpness, no hole.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
     face_offsets: Vec<u32>,
@@ -249,7 +251,7 @@ impl Topology {
 
     /// The number of faces.
     pub fn face_count(&self) -> usize {
-        self.face_offsets.len() - 1
+        self.face_offsets.len().saturating_sub(1)
     }
 
     /// The number of vertices.
@@ -264,18 +266,21 @@ impl Topology {
 
     /// The vertices of a face.
     pub fn face(&self, face: u32) -> &[u32] {
-        &self.face_vertices[self.face_offsets[face as usize] as usize
-            ..self.face_offsets[face as usize + 1] as usize]
+        list(&self.face_offsets, &self.face_vertices, face)
     }
 
     /// The edges of a face; edge i joins its vertices i and i + 1.
     pub fn face_edges(&self, face: u32) -> &[u32] {
-        &self.face_edges[self.face_offsets[face as usize] as usize
-            ..self.face_offsets[face as usize + 1] as usize]
+        list(&self.face_offsets, &self.face_edges, face)
     }
 
-    /// An edge by number.
-    pub fn edge(&self, edge: u32) -> &Edge {
+    /// The edges by number.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// An edge by number, which must be one.
+    pub(crate) fn edge(&self, edge: u32) -> &Edge {
         &self.edges[edge as usize]
     }
 
@@ -296,12 +301,13 @@ impl Topology {
 
     /// The sharpness of a vertex.
     pub fn vertex_sharpness(&self, vertex: u32) -> f32 {
-        self.vertex_sharpness[vertex as usize]
+        let sharpness = self.vertex_sharpness.get(vertex as usize);
+        sharpness.copied().unwrap_or_default()
     }
 
     /// Whether a face is a hole: it shapes its neighbours but is not drawn.
     pub fn is_hole(&self, face: u32) -> bool {
-        self.holes[face as usize]
+        self.holes.get(face as usize) == Some(&true)
     }
 
     /// Whether any face is no hole.
@@ -339,8 +345,14 @@ impl Topology {
         Some((beyond, if a == edge { b } else { a }))
     }
 
-    /// The sector around corner `corner` of `face` that infinitely sharp edges and boundaries leave; see [`Fan`].
-    pub fn fan(&self, face: u32, corner: u32) -> Fan {
+    /// The sector around a corner that infinitely sharp edges and boundaries leave, see [`Fan`]; None where there is no such corner.
+    pub fn fan_at(&self, FaceCorner { face, corner }: FaceCorner) -> Option<Fan> {
+        let is_corner = (corner as usize) < self.face(face).len();
+        is_corner.then(|| self.fan(face, corner))
+    }
+
+    /// The sector around corner `corner` of `face`, which must be one; see [`Topology::fan_at`].
+    pub(crate) fn fan(&self, face: u32, corner: u32) -> Fan {
         let arity = self.face(face).len();
         let vertex = self.face(face)[corner as usize];
         let first = self.face_edges(face)[corner as usize];

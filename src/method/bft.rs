@@ -26,7 +26,7 @@ use crate::abi::{self, TableFace, TablePlace};
 use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
-use crate::method::surface::{Controls, Surface, SurfacePoint};
+use crate::method::surface::{Controls, SurfacePoint, Tangents, UNIT, reach};
 use crate::method::triangles::corner_weights;
 use crate::method::unit::unit;
 use crate::method::{
@@ -317,17 +317,28 @@ impl Sums<'_> {
     }
 
     /// The normal from tangents (section II-C: "tangent BFTs") at each point of the lattice, linear between. Their weights sum to zero, so they
-    /// are sums of differences, which lose less.
+    /// are sums of differences, which lose less; zero where rounding may have made them.
+    ///
+    /// Points are sums themselves, and so each spoke errs by the rounding of both its ends, as those of a ring do.
     fn limit_normal(&self, face: TableFace, shares: Shares) -> Vec3 {
         let origin = Vec3::from(self.point(face, 0).position);
+        let roundings = face.count as f32 + 4.0;
         let of_row = |row: u32| {
             let first = face.weights + 2 * row * face.count;
-            let mut tangents = Surface::default();
+            let mut tangents = Tangents::default();
+            let (mut spread, mut total) = ([0.0; 2], [0.0; 2]);
             for i in (0..face.count).rev() {
                 let spoke = Vec3::from(self.point(face, i).position) - origin;
-                tangents.du += self.weights[(first + i) as usize] * spoke;
-                tangents.dv += self.weights[(first + face.count + i) as usize] * spoke;
+                for tangent in 0..2 {
+                    let row = first + tangent as u32 * face.count;
+                    let weight = self.weights[(row + i) as usize];
+                    tangents.sums[tangent] += weight * spoke;
+                    spread[tangent] += weight.abs() * reach(spoke);
+                    total[tangent] += weight.abs();
+                }
             }
+            let error = |i: usize| roundings * spread[i] + 4.0 * reach(origin) * total[i];
+            tangents.errors = [0, 1].map(|i| UNIT * error(i));
             tangents.normal()
         };
         let used = shares.iter().filter(|(_, share)| *share != 0.0);

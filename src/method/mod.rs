@@ -55,6 +55,7 @@ mod patches;
 mod phong;
 mod pn;
 mod points;
+mod ptex;
 mod qas;
 mod quads;
 mod quadtree;
@@ -67,7 +68,7 @@ mod vertices;
 use glam::Vec2;
 
 use crate::abi;
-use crate::error::{Error, Misuse, Result};
+use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
 use crate::tessellation::Domain;
 use origin::Origin;
@@ -76,6 +77,7 @@ pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use points::Points;
+pub use ptex::{from_ptex, to_ptex};
 pub use quadtree::PlanStatistics;
 pub use surface::{Controls, SurfacePoint};
 pub use tags::DepthTags;
@@ -162,10 +164,12 @@ impl Method {
     pub fn prepare(&self, model: &Model, options: impl Into<MethodOptions>) -> Result<Prepared> {
         self.check_model(model)?;
         let mut prepared = (self.prepare)(model, options.into())?;
+        prepared.method = self.name;
         prepared.outline = Outline::new(model.topology());
         prepared.origin = Origin::new(model);
         for pass in &mut prepared.passes {
             pass.sides = outline::sides_of(model, &pass.patches);
+            pass.needs = [model.mesh().vertex_count(), prepared.points.count as usize];
         }
         Ok(prepared)
     }
@@ -225,6 +229,32 @@ pub fn method_for(model: &Model) -> &'static Method {
     nearest(model, METHODS.iter())
 }
 
+/// Prepares a model by the method that draws it when nobody names one, see [`method_for`]; where that refuses after all, as it does tables that devices may
+/// not be able to bind, by the one that comes next. [`Prepared::method`] tells by which; the errors are those of the methods before it.
+///
+/// # Errors
+/// That of the first, when all refuse.
+pub fn prepare_by_default(
+    model: &Model,
+    options: impl Into<MethodOptions>,
+) -> Result<(Prepared, Vec<Error>)> {
+    let options = options.into();
+    let mut able: Vec<&Method> = METHODS
+        .iter()
+        .filter(|method| method.check_model(model).is_ok())
+        .collect();
+    // In the order of the table among equals.
+    able.sort_by_key(|method| method.contract.reproduces.remoteness());
+    let mut refusals = Vec::new();
+    for method in able {
+        match method.prepare(model, options) {
+            Ok(prepared) => return Ok((prepared, refusals)),
+            Err(refusal) => refusals.push(refusal),
+        }
+    }
+    Err(refusals.swap_remove(0))
+}
+
 /// The way out when a method refuses a model: what draws it when that one does not.
 fn instead_of(refusing: &str, model: &Model) -> &'static Method {
     nearest(
@@ -264,6 +294,8 @@ pub fn method(name: &str) -> Result<&'static Method> {
 /// What a method made of a model: passes to draw, independent of one another.
 #[derive(Clone, Debug, Default)]
 pub struct Prepared {
+    /// The name of the method. Filled in by [`Method::prepare`].
+    pub method: &'static str,
     /// The passes.
     pub passes: Vec<Pass>,
     /// What is computed from the control vertices before patches are drawn; nothing for most methods.
@@ -304,6 +336,8 @@ pub struct Pass {
     pub max_level: u32,
     /// What the evaluation shader computes, on the CPU.
     pub twin: Twin,
+    /// Of how many control vertices and points it was made. Filled in by [`Method::prepare`].
+    needs: [usize; 2],
 }
 
 /// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices and points, patch, and where in its domain.
@@ -336,23 +370,17 @@ impl Prepared {
 
     /// Refuses lists that have not one entry a control vertex.
     pub(crate) fn check_count(&self, what: &'static str, given: usize) -> Result<()> {
-        let expected = self.vertex_count();
-        if given == expected {
-            return Ok(());
-        }
-        Err(Error::Misuse(Misuse::Count {
-            what,
-            given,
-            expected,
-        }))
+        self.outline.check_count(what, given)
     }
 
-    /// Control vertices, in local units, with the points that are computed from them: what [`Pass::evaluate`] needs.
+    /// Control vertices, in local units, with the points that are computed from them: what [`Pass::evaluate`] needs. Of more or fewer than
+    /// [`vertex_count`](Self::vertex_count) there are no points, and no surface.
     pub fn controls(&self, vertices: Vec<glam::Vec3>) -> Controls {
-        Controls {
-            points: self.points.compute(&vertices),
-            vertices,
-        }
+        let points = match vertices.len() == self.vertex_count() {
+            true => self.points.compute(&vertices),
+            false => Vec::new(),
+        };
+        Controls { vertices, points }
     }
 }
 
@@ -372,16 +400,15 @@ impl Pass {
             scratch_products: Vec::new(),
             max_level: abi::HIGHEST_LEVEL,
             twin,
+            needs: [0; 2],
         }
     }
 
-    /// Evaluates patch `patch` at `uv` of its own domain; what lies outside of that is moved to its edge. Where there is no such patch, or (u, v) is
-    /// no number, there is no surface: position and normal are zero.
-    ///
-    /// # Panics
-    /// With `controls` of another model, which has fewer vertices.
+    /// Evaluates patch `patch` at `uv` of its own domain; what lies outside of that is moved to its edge. Where there is no such patch, (u, v) is
+    /// no number, or the controls are of another number of vertices or points, there is no surface: position and normal are zero.
     pub fn evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-        if patch >= self.patches.len() || uv.is_nan() {
+        let given = [controls.vertices.len(), controls.points.len()];
+        if patch >= self.patches.len() || uv.is_nan() || given != self.needs {
             return SurfacePoint::default();
         }
         (self.twin)(
@@ -435,115 +462,4 @@ impl Pass {
 /// Whether a point of a triangle is a corner or the middle of an edge; see [`Reproduces::LimitOnHexagon`].
 pub fn is_on_hexagon(uv: [f32; 2]) -> bool {
     uv.iter().all(|x| (2.0 * x).fract() == 0.0)
-}
-
-/// Where (u, v) of a patch's own domain lies in its ptex face: the patch may be one of its children, and its domain may be turned.
-pub fn to_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
-    let [u, v] = turned_back(patch, uv);
-    match child(patch) {
-        Child::Whole => [u, v],
-        Child::Corner(corner) => {
-            let [x, y] = corner_uv(patch, corner);
-            [0.5 * (u + x), 0.5 * (v + y)]
-        }
-        Child::Middle => [0.5 * (1.0 - u), 0.5 * (1.0 - v)],
-    }
-}
-
-/// Where (u, v) of a ptex face lies in the patch's own domain; outside of it where another child has the point.
-pub fn from_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
-    let [u, v] = uv;
-    let own = match child(patch) {
-        Child::Whole => [u, v],
-        Child::Corner(corner) => {
-            let [x, y] = corner_uv(patch, corner);
-            [2.0 * u - x, 2.0 * v - y]
-        }
-        Child::Middle => [1.0 - 2.0 * u, 1.0 - 2.0 * v],
-    };
-    turned(patch, own)
-}
-
-/// Which part of its ptex face a patch is.
-enum Child {
-    Whole,
-    /// At this corner.
-    Corner(usize),
-    /// In the middle of a triangle, with its corners opposite to the triangle's.
-    Middle,
-}
-
-fn child(patch: &abi::Patch) -> Child {
-    match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
-        0 => Child::Whole,
-        number if number < abi::CHILD_OF_TRIANGLE => {
-            Child::Corner((number - abi::CHILD_OF_QUAD) as usize)
-        }
-        number => match number - abi::CHILD_OF_TRIANGLE {
-            corner @ 0..3 => Child::Corner(corner as usize),
-            _ => Child::Middle,
-        },
-    }
-}
-
-/// Where a corner of a patch's ptex face is.
-fn corner_uv(patch: &abi::Patch, corner: usize) -> [f32; 2] {
-    match turn(patch) {
-        (_, true) => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]][corner],
-        (_, false) => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][corner],
-    }
-}
-
-/// By how many corners the patch's domain is turned against its face, and whether it is a triangle's. Whole triangles are not turned.
-fn turn(patch: &abi::Patch) -> (u32, bool) {
-    let child = patch.flags >> abi::PATCH_CHILD_SHIFT & 15;
-    let turn = patch.flags >> abi::PATCH_TURN_SHIFT & 3;
-    (turn, child >= abi::CHILD_OF_TRIANGLE)
-}
-
-fn turned_back(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
-    match turn(patch) {
-        (0, _) => [u, v],
-        (1, true) => [(1.0 - u) - v, u],
-        (_, true) => [v, (1.0 - u) - v],
-        (1, false) => [1.0 - v, u],
-        (2, false) => [1.0 - u, 1.0 - v],
-        (_, false) => [v, 1.0 - u],
-    }
-}
-
-fn turned(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
-    match turn(patch) {
-        (0, _) => [u, v],
-        (1, true) => [v, (1.0 - u) - v],
-        (_, true) => [(1.0 - u) - v, u],
-        (1, false) => [v, 1.0 - u],
-        (2, false) => [1.0 - u, 1.0 - v],
-        (_, false) => [1.0 - v, u],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn children_and_turns_lead_to_the_ptex_face_and_back() {
-        for child in 0..=8u32 {
-            let turns = if child >= abi::CHILD_OF_TRIANGLE {
-                3
-            } else {
-                4
-            };
-            for turn in 0..turns {
-                let patch = abi::Patch {
-                    flags: child << abi::PATCH_CHILD_SHIFT | turn << abi::PATCH_TURN_SHIFT,
-                    ..Default::default()
-                };
-                for uv in [[0.0, 0.0], [0.25, 0.5], [1.0, 0.0], [0.0, 1.0]] {
-                    assert_eq!(from_ptex(&patch, to_ptex(&patch, uv)), uv);
-                }
-            }
-        }
-    }
 }

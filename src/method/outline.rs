@@ -4,21 +4,23 @@ use glam::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
 use crate::abi;
+use crate::error::{Error, Misuse, Result};
 use crate::mesh::Model;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
+use crate::method::ptex::{Child, child};
 use crate::method::tags::DepthTags;
-use crate::method::{Child, child};
 
 /// The edges and faces of a control mesh. Both count as sides, edges first: a patch's edge is a part of one of its mesh's edges, or lies within
 /// one of its faces.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     /// The control vertices of each edge.
-    pub edges: Vec<[u32; 2]>,
+    edges: Vec<[u32; 2]>,
     /// The vertices of each face in turn, and of all faces one after the other.
     face_vertices: Vec<u32>,
     face_ends: Vec<usize>,
+    vertices: usize,
 }
 
 impl Outline {
@@ -27,6 +29,7 @@ impl Outline {
         let ends = |edge| topology.edge(edge).vertices;
         let mut outline = Outline {
             edges: (0..topology.edge_count() as u32).map(ends).collect(),
+            vertices: topology.vertex_count(),
             ..Outline::default()
         };
         for face in 0..topology.face_count() as u32 {
@@ -37,13 +40,35 @@ impl Outline {
     }
 
     /// The depth of each side: of an edge the greater of its ends', of a face the greatest of its edges'.
-    pub fn depths(&self, tags: &DepthTags) -> Vec<f32> {
+    ///
+    /// # Errors
+    /// [`Misuse::Count`] for other than one tag a control vertex.
+    pub fn depths(&self, tags: &DepthTags) -> Result<Vec<f32>> {
+        self.check_count("depth tags", tags.depths.len())?;
         let greatest = |vertices: &[u32]| {
             let tags = vertices.iter().map(|&vertex| tags.depths[vertex as usize]);
             tags.fold(0.0, f32::max)
         };
         let edges = self.edges.iter().map(|ends| greatest(ends));
-        edges.chain(self.faces().map(greatest)).collect()
+        Ok(edges.chain(self.faces().map(greatest)).collect())
+    }
+
+    /// Refuses lists that have not one entry a control vertex.
+    pub(super) fn check_count(&self, what: &'static str, given: usize) -> Result<()> {
+        let expected = self.vertices;
+        if given == expected {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::Count {
+            what,
+            given,
+            expected,
+        }))
+    }
+
+    /// The control vertices of each edge.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
     }
 
     /// The vertices of each face.

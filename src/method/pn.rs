@@ -11,7 +11,7 @@ use crate::mesh::{Model, Scheme};
 use crate::method::quads::{quad_weights, sum_of_four};
 use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
-use crate::method::unit::unit;
+use crate::method::unit::{direction, unit};
 use crate::method::vertices::{self, control_points};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::tessellation::Domain;
@@ -55,7 +55,7 @@ fn edge_point(a: Vec3, b: Vec3, normal: Vec3) -> Vec3 {
 
 /// The control point of the quadratic between two corners (section 3.3): the mean normal, mirrored at the plane across the edge.
 fn edge_normal(a: Vec3, b: Vec3, na: Vec3, nb: Vec3) -> Vec3 {
-    let (along, sum) = (unit(b - a), na + nb);
+    let (along, sum) = (direction(a, b), na + nb);
     unit(sum - (2.0 * along.dot(sum)) * along)
 }
 

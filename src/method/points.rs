@@ -4,13 +4,17 @@
 //! in `glsl/points.comp`, of which this is the twin. Both give the same bits: sums run in the order of the terms, and unit vectors are made
 //! by additions and multiplications alone, which Vulkan wants correctly rounded (Vulkan spec, "Precision of Individual Operations"), where
 //! square roots are not.
+//!
+//! An engine may write any floats as positions. For normals they are brought to about unit size first, by the power of two of the greatest of a row's: in
+//! floats, squares leave the range beyond 1e19 and below 1e-19. Bits are not promised where some positions of a row are 2^100 times as large as
+//! others, or subnormal.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
 use crate::method::surface::{CLEAR, Tangents, UNIT, reach};
-use crate::method::unit::unit;
+use crate::method::unit::{factor_for, greatest_exponent, sized, unit};
 use crate::subdivision::Mask;
 
 /// How points are computed, step by step.
@@ -28,7 +32,7 @@ pub struct Points {
 
 /// What a point becomes in a step. Masks of a limit may name different vertices.
 #[derive(Clone, Copy, Debug)]
-pub enum Row<'a> {
+pub(super) enum Row<'a> {
     /// Position from control vertices.
     Blend(&'a Mask),
     /// Position and tangents from control vertices.
@@ -50,7 +54,7 @@ pub enum Row<'a> {
 
 impl Points {
     /// Begins a step whose rows compute the points from `first_point` on.
-    pub fn begin(&mut self, kind: u32, first_point: u32) {
+    pub(super) fn begin(&mut self, kind: u32, first_point: u32) {
         self.steps.push(PointStep {
             kind,
             first_row: self.rows.len() as u32,
@@ -60,7 +64,7 @@ impl Points {
     }
 
     /// Adds the next row to the last step.
-    pub fn push(&mut self, row: Row<'_>) {
+    pub(super) fn push(&mut self, row: Row<'_>) {
         let first = self.terms.len() as u32;
         let mut flags = 0;
         match row {
@@ -89,8 +93,8 @@ impl Points {
         self.count = self.count.max(step.first_point + step.count);
     }
 
-    /// The points of control vertices.
-    pub fn compute(&self, vertices: &[Vec3]) -> Vec<Point> {
+    /// The points of control vertices, of which none that is named lacks.
+    pub(crate) fn compute(&self, vertices: &[Vec3]) -> Vec<Point> {
         let mut points = vec![Point::default(); self.count as usize];
         for step in &self.steps {
             let computed: Vec<Point> = (0..step.count)
@@ -160,7 +164,12 @@ impl Points {
 /// The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
 /// they are small beside the model. Zero where rounding may have made it.
 fn tangent_normal(terms: &[PointTerm], vertices: &[Vec3], firm: bool) -> Vec3 {
-    let vertex = |term: &PointTerm| vertices[term.source as usize];
+    let given = |term: &PointTerm| vertices[term.source as usize];
+    let factor = common_factor(terms.iter().map(given));
+    if factor == 0.0 {
+        return Vec3::ZERO;
+    }
+    let vertex = |term: &PointTerm| sized(given(term), factor);
     let origin = terms.last().map_or(Vec3::ZERO, vertex);
     let mut tangents = Tangents::default();
     let (mut spread, mut total) = ([0.0; 2], [0.0; 2]);
@@ -187,9 +196,19 @@ fn mean_normal(terms: &[PointTerm], points: &[Point]) -> Vec3 {
     }))
 }
 
+/// The power of two that brings the greatest of some positions to about unit size; 0 where there is none.
+fn common_factor(positions: impl Iterator<Item = Vec3>) -> f32 {
+    factor_for(positions.map(greatest_exponent).max().unwrap_or(0))
+}
+
 /// The areas of the triangles between the spokes of a ring.
 fn ring_normal(terms: &[PointTerm], points: &[Point], open: bool) -> Vec3 {
-    let position = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
+    let given = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
+    let factor = common_factor(terms.iter().map(given));
+    if factor == 0.0 {
+        return Vec3::ZERO;
+    }
+    let position = |term: &PointTerm| sized(given(term), factor);
     let middle = position(&terms[0]);
     let spokes: Vec<Vec3> = terms[1..]
         .iter()

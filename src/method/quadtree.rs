@@ -112,8 +112,8 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
         index_bytes: size_of_val(&regular.controls[..]),
         ..PlanStatistics::default()
     };
-    let short = irregular(model, "quadtree", rings, options, &mut plans);
-    let long = irregular(model, "quadtree_long", long_rings, options, &mut plans);
+    let short = irregular(model, "quadtree", rings, options, &mut plans)?;
+    let long = irregular(model, "quadtree_long", long_rings, options, &mut plans)?;
     plans.build_seconds = started.elapsed().as_secs_f64();
     Ok(Prepared {
         plans: Some(plans),
@@ -128,7 +128,7 @@ fn irregular(
     rings: Vec<(Part, Ring)>,
     options: PlanOptions,
     statistics: &mut PlanStatistics,
-) -> Pass {
+) -> Result<Pass> {
     let topology = model.topology();
     let mut pass = pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options);
     let mut catalogue = Catalogue::default();
@@ -138,15 +138,17 @@ fn irregular(
     };
     let patches: Vec<Irregular> = rings.into_iter().map(&mut number).collect();
     let mut packed = PackedPlans::default();
-    let plans = catalogue.build(options);
-    plans.iter().for_each(|plan| packed.push(plan));
+    let plans = catalogue.build(options)?;
+    for plan in &plans {
+        packed.push(plan)?;
+    }
     statistics.plans += plans.len();
     statistics.stencils += plans.iter().map(|plan| plan.stencils.len()).sum::<usize>();
     for (count, kind) in statistics.nodes.iter_mut().zip(NODE_KINDS) {
         *count += packed.count(kind);
     }
     let inside_bytes = packed.quadtree_bytes();
-    let borders = Borders::new(topology, &patches, &mut packed, options);
+    let borders = Borders::new(topology, &patches, &mut packed, options)?;
     for (patch, &border) in patches.iter().zip(&borders.numbers) {
         let turn = patch.turn(topology);
         let vertices = &patch.ring.vertices;
@@ -167,7 +169,7 @@ fn irregular(
         bytemuck::cast_slice(&packed.weights).to_vec(),
         bytemuck::cast_slice(&records).to_vec(),
     ];
-    pass
+    Ok(pass)
 }
 
 /// The points of a patch's slot at each level.
@@ -239,16 +241,18 @@ fn pass(
 }
 
 fn surroundings(topology: &Topology, part: Part) -> Surroundings {
-    match bspline_patch(topology, part.face)
+    let plain = bspline_patch(topology, part.face)
         .as_ref()
-        .and_then(plain_vertices)
-    {
-        Some(vertices) => Surroundings::Regular(part, vertices),
-        None if topology.face(part.face).len() == 4 => {
-            Surroundings::Irregular(part, Ring::of_quad(topology, part.face))
-        }
-        None => Surroundings::Irregular(part, Ring::from_corner(topology, part.face, part.corner)),
+        .and_then(plain_vertices);
+    if let Some(vertices) = plain {
+        return Surroundings::Regular(part, vertices);
     }
+    let quad = topology.face(part.face).len() == 4;
+    let ring = match quad {
+        true => Ring::of_quad(topology, part.face),
+        false => Ring::from_corner(topology, part.face, part.corner),
+    };
+    Surroundings::Irregular(part, ring.expect("parts are the topology's own"))
 }
 
 /// The vertices of a B-spline patch that has neither crease nor mirrored points.

@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
+use crate::error::Result;
 use crate::method::Outline;
 
 /// A depth for each control vertex: 2 to the depth is the level of the edges around it, the greater one of two tags' an edge's. So both faces
@@ -41,37 +42,47 @@ impl DepthTags {
 
     /// View-dependent, by what is seen: such that the segments of the edges around a vertex are at most `pixels` long in a picture of `size`
     /// pixels, wherever they point to. What lies at the eye or behind it is refined to the end.
+    ///
+    /// # Errors
+    /// [`Misuse::Count`](crate::Misuse::Count) for other than one position a control vertex.
     pub fn by_screen(
         outline: &Outline,
         vertices: &[Vec3],
         clip_from_model: [[f32; 4]; 4],
         size: [f32; 2],
         pixels: f32,
-    ) -> DepthTags {
+    ) -> Result<DepthTags> {
+        outline.check_count("positions", vertices.len())?;
         let clip = Mat4::from_cols_array_2d(&clip_from_model);
         let scale = |row: Vec4, size: f32| 0.5 * size * row.truncate().length();
         let pixels_per_unit = scale(clip.row(0), size[0]).max(scale(clip.row(1), size[1]));
-        DepthTags::by_edges(outline, vertices.len(), |from, to| {
+        let tags = DepthTags::by_edges(outline, vertices.len(), |from, to| {
             let [from, to] = [from, to].map(|vertex| vertices[vertex as usize]);
             let w = clip.row(3).dot(from.extend(1.0)).max(f32::MIN_POSITIVE);
             (from.distance(to) * pixels_per_unit / w / pixels).log2()
-        })
+        });
+        Ok(tags)
     }
 
     /// View-independent, by the curvature: such that from one end of a segment to the other normals turn by at most `degrees`.
-    pub fn by_curvature(outline: &Outline, vertices: &[Vec3], degrees: f32) -> DepthTags {
+    ///
+    /// # Errors
+    /// [`Misuse::Count`](crate::Misuse::Count) for other than one position a control vertex.
+    pub fn by_curvature(outline: &Outline, vertices: &[Vec3], degrees: f32) -> Result<DepthTags> {
+        outline.check_count("positions", vertices.len())?;
         let normals = outline.normals(vertices);
-        DepthTags::by_edges(outline, vertices.len(), |from, to| {
+        let tags = DepthTags::by_edges(outline, vertices.len(), |from, to| {
             let [a, b] = [from, to].map(|vertex| normals[vertex as usize]);
             let angle = 2.0 * (a - b).length().atan2((a + b).length());
             (angle.to_degrees() / degrees).log2()
-        })
+        });
+        Ok(tags)
     }
 
     /// The greatest depth that an edge at a vertex wants, from one end to the other.
     fn by_edges(outline: &Outline, vertices: usize, depth: impl Fn(u32, u32) -> f32) -> DepthTags {
         let mut depths = vec![0.0f32; vertices];
-        for &[a, b] in &outline.edges {
+        for &[a, b] in outline.edges() {
             for (from, to) in [(a, b), (b, a)] {
                 let own = &mut depths[from as usize];
                 *own = own.max(depth(from, to));

@@ -15,7 +15,7 @@ const LOST: u32 = 48;
 /// A vector over a power of two: the greatest element is 2..4. Zero for one without a direction, which is not finite, or subnormal as a whole.
 pub fn scaled(v: Vec3) -> Vec3 {
     let bits = v.to_array().map(|x| x.to_bits() & EXPONENT);
-    let greatest = bits[0].max(bits[1]).max(bits[2]);
+    let greatest = greatest_exponent(v);
     if greatest == 0 || greatest == EXPONENT {
         return Vec3::ZERO;
     }
@@ -23,6 +23,39 @@ pub fn scaled(v: Vec3) -> Vec3 {
     let is_lost = |i: usize| bits[i] == 0 || bits[i] + (LOST << 23) < greatest;
     let grown = |i: usize| if is_lost(i) { 0.0 } else { v[i] * factor };
     Vec3::from([0, 1, 2].map(grown))
+}
+
+/// The exponent of a vector's greatest element, in its place among the bits of a float.
+pub fn greatest_exponent(v: Vec3) -> u32 {
+    let bits = v.to_array().map(|x| x.to_bits() & EXPONENT);
+    bits[0].max(bits[1]).max(bits[2])
+}
+
+/// The power of two that brings vectors of which this is the greatest exponent to 1..4, from where sums and products of many of them stay far within
+/// the range of floats; 0 where there is none.
+pub fn factor_for(exponent: u32) -> f32 {
+    if exponent == 0 || exponent == EXPONENT {
+        return 0.0;
+    }
+    f32::from_bits(((254 << 23) - exponent).max(1 << 23))
+}
+
+/// A vector times such a power. What is subnormal is zero: devices may take it for that.
+pub fn sized(v: Vec3, factor: f32) -> Vec3 {
+    let sized = |x: f32| match x.to_bits() & EXPONENT {
+        0 => 0.0,
+        _ => factor * x,
+    };
+    Vec3::from(v.to_array().map(sized))
+}
+
+/// The direction from `a` to `b`, both of any size; zero where there is none.
+pub fn direction(a: Vec3, b: Vec3) -> Vec3 {
+    let factor = factor_for(greatest_exponent(a).max(greatest_exponent(b)));
+    match factor {
+        0.0 => Vec3::ZERO,
+        _ => unit(sized(b, factor) - sized(a, factor)),
+    }
 }
 
 /// Unit length, or zero where there is no direction. No zero is negative.
@@ -74,6 +107,30 @@ mod tests {
         let [x, y, z] = unit(Vec3::new(-0.0, -subnormal, -5.0)).to_array();
         assert_eq!([x, y].map(f32::to_bits), [0; 2]);
         assert!((z + 1.0).abs() <= f32::EPSILON, "{z}");
+    }
+
+    #[test]
+    fn factors_lead_to_where_sums_have_room() {
+        for greatest in [f32::MIN_POSITIVE, 1e-20, 1.0, 1e20, f32::MAX] {
+            let factor = factor_for(greatest_exponent(Vec3::new(0.0, -greatest, 1e-40)));
+            assert!((1.0..4.0).contains(&(greatest * factor)), "{greatest}");
+        }
+        for none in [0.0, 1e-40, f32::INFINITY, f32::NAN] {
+            assert_eq!(factor_for(greatest_exponent(Vec3::splat(none))), 0.0);
+        }
+    }
+
+    #[test]
+    fn directions_are_of_any_two_points() {
+        for size in SIZES.into_iter().chain([f32::MAX]) {
+            let (a, b) = (Vec3::new(-size, size, 0.0), Vec3::new(size, -size, 0.0));
+            let right = Vec3::new(1.0, -1.0, 0.0).normalize();
+            assert!(direction(a, b).distance(right) < 3e-7, "{size}");
+            assert_eq!(direction(a, a), Vec3::ZERO);
+        }
+        for none in [f32::INFINITY, f32::NAN] {
+            assert_eq!(direction(Vec3::splat(none), Vec3::ONE), Vec3::ZERO);
+        }
     }
 
     #[test]

@@ -78,7 +78,12 @@ pub struct Plan {
 
 impl Plan {
     /// Builds the plan of a face: what is inside of it. Edges and corners have plans of their own.
-    pub fn build(configuration: &Configuration, options: PlanOptions) -> Plan {
+    ///
+    /// # Errors
+    /// As [`PlanOptions::check`]; [`Misuse::Ring`](crate::Misuse::Ring) for the configuration of an edge or vertex.
+    pub fn build(configuration: &Configuration, options: PlanOptions) -> Result<Plan> {
+        let options = options.check()?;
+        configuration.check_corners(configuration.arity())?;
         let base = Level::base(configuration);
         let nearby = nearby::tangents(configuration, &base);
         let bases = Bases::new(4);
@@ -101,10 +106,10 @@ impl Plan {
             &mut levels,
         );
         bases.apply(&mut rows, &mut levels);
-        Plan {
+        Ok(Plan {
             nearby,
             ..sorted(tree.flatten(), &rows, &levels, options.max_level)
-        }
+        })
     }
 
     /// How many stencils each level 0..=max_level needs; they are the first ones.

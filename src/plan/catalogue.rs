@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use crate::error::Result;
 use crate::plan::builder::{Plan, PlanOptions};
 use crate::plan::configuration::Configuration;
 
@@ -30,7 +31,10 @@ impl Catalogue {
     }
 
     /// Builds the plan of every configuration, in parallel, in the order of their numbers.
-    pub fn build(&self, options: PlanOptions) -> Vec<Plan> {
+    ///
+    /// # Errors
+    /// As [`Plan::build`].
+    pub fn build(&self, options: PlanOptions) -> Result<Vec<Plan>> {
         let mut configurations: Vec<(&Configuration, u32)> =
             self.numbers.iter().map(|(c, &n)| (c, n)).collect();
         configurations.sort_unstable_by_key(|&(_, number)| number);

@@ -8,6 +8,7 @@
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
+use crate::error::{Error, Misuse, Result};
 use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::Topology;
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
@@ -32,20 +33,24 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// The ring of a quad, beginning at the corner whose configuration is the least, so that turned faces find the same plan.
-    pub fn of_quad(topology: &Topology, face: u32) -> Ring {
-        Ring::least((0..4).map(|start| Ring::from_corner(topology, face, start)))
+    /// The ring of a quad, beginning at the corner whose configuration is the least, so that turned faces find the same plan. None where there is no
+    /// such quad.
+    pub fn of_quad(topology: &Topology, face: u32) -> Option<Ring> {
+        let corners = (0..4).map(|start| Ring::from_corner(topology, face, start));
+        let corners: Option<Vec<Ring>> = corners.collect();
+        Ring::least(corners?.into_iter()).filter(|_| topology.face(face).len() == 4)
     }
 
-    /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner.
-    pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Ring {
+    /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner. None where
+    /// there is no such corner.
+    pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Option<Ring> {
         let arity = topology.face(face).len() as u32;
-        Ring::around(topology, face, start, arity)
+        (start < arity).then(|| Ring::around(topology, face, start, arity))
     }
 
     /// The ring of the edge: the faces around its ends. It begins in one of the faces on the edge, and the edge runs from vertex 0 to
-    /// vertex 1, so that the configuration is the least.
-    pub fn of_edge(topology: &Topology, edge: u32) -> Ring {
+    /// vertex 1, so that the configuration is the least. None where there is no such edge.
+    pub fn of_edge(topology: &Topology, edge: u32) -> Option<Ring> {
         let rings = topology.edge_faces(edge).iter().map(|&face| {
             let edges = topology.face_edges(face).iter();
             let start = edges.into_iter().position(|&e| e == edge);
@@ -55,16 +60,14 @@ impl Ring {
         Ring::least(rings)
     }
 
-    /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least.
-    pub fn of_vertex(topology: &Topology, vertex: u32) -> Ring {
+    /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least. None of a vertex that no face has.
+    pub fn of_vertex(topology: &Topology, vertex: u32) -> Option<Ring> {
         let corners = topology.vertex_faces(vertex).iter();
         Ring::least(corners.map(|at| Ring::around(topology, at.face, at.corner, 1)))
     }
 
-    fn least(rings: impl Iterator<Item = Ring>) -> Ring {
-        rings
-            .min_by(|a, b| a.configuration.cmp(&b.configuration))
-            .expect("edges and vertices of faces have faces")
+    fn least(rings: impl Iterator<Item = Ring>) -> Option<Ring> {
+        rings.min_by(|a, b| a.configuration.cmp(&b.configuration))
     }
 
     /// The faces around so many vertices of a face, beginning with its corner `start`.
@@ -257,6 +260,29 @@ impl Configuration {
                 (sharpness, if a < b { [near, far] } else { [far, near] })
             },
         )
+    }
+
+    /// Around how many corners of face 0 it has all faces: all of its corners in the ring of a face, 2 in that of an edge, 1 in that of a vertex.
+    fn corners(&self) -> u32 {
+        let faces = self.words[1];
+        let end = (0..faces).fold(2, |at, _| at + 1 + self.words[at] as usize);
+        self.words[end]
+    }
+
+    /// Refuses to plan for what lies around more corners than the configuration tells of.
+    ///
+    /// # Errors
+    /// [`Misuse::Ring`].
+    pub(super) fn check_corners(&self, needed: u32) -> Result<()> {
+        match self.corners() {
+            given if given < needed => Err(Error::Misuse(Misuse::Ring { needed, given })),
+            _ => Ok(()),
+        }
+    }
+
+    /// The number of corners of face 0.
+    pub(super) fn arity(&self) -> u32 {
+        self.words[2]
     }
 
     /// The words, for storage.

@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 
+use crate::error::Result;
 use crate::mesh::sharpness::is_infinite;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::builder::{DEEPEST, Plan, PlanOptions, SHALLOWEST, sorted};
@@ -58,7 +59,19 @@ struct Builder {
 
 impl EdgePlan {
     /// Builds the plan of an edge.
-    pub fn build(configuration: &Configuration, kind: EdgeKind, options: PlanOptions) -> EdgePlan {
+    ///
+    /// # Errors
+    /// As [`PlanOptions::check`]; [`Misuse::Ring`](crate::Misuse::Ring) for a configuration that has not all faces around the edge.
+    pub fn build(
+        configuration: &Configuration,
+        kind: EdgeKind,
+        options: PlanOptions,
+    ) -> Result<EdgePlan> {
+        let options = options.check()?;
+        configuration.check_corners(match kind {
+            EdgeKind::Whole => 2,
+            EdgeKind::Spoke => configuration.arity(),
+        })?;
         let whole = Level::whole(configuration);
         let base = match kind {
             EdgeKind::Whole => whole,
@@ -102,10 +115,10 @@ impl EdgePlan {
         } = builder;
         bases.apply(&mut rows, &mut levels);
         let nodes = flatten(branch);
-        EdgePlan {
+        Ok(EdgePlan {
             plan: sorted(nodes, &rows, &levels, options.max_level),
             sides: if sharp { sides } else { Vec::new() },
-        }
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Plans as the bytes that the shaders read.
 
 use crate::abi;
+use crate::error::{Error, Misuse, Result};
 use crate::plan::builder::Plan;
 use crate::plan::tree::{Node, NodeKind};
 
@@ -54,13 +55,13 @@ pub struct PackedPlans {
 impl PackedPlans {
     /// Appends a plan.
     ///
-    /// # Panics
-    /// When the plan has more than 65,536 stencils. Only refining long creases of sharpness 9 away could come near.
-    pub fn push(&mut self, plan: &Plan) {
-        assert!(
-            plan.stencils.len() <= 1 << 16,
-            "points are numbered in 16 bits"
-        );
+    /// # Errors
+    /// [`Misuse::PlanTooLarge`] when the plan has more than 65,536 stencils: points are numbered in 16 bits.
+    pub fn push(&mut self, plan: &Plan) -> Result<()> {
+        let (points, greatest) = (plan.stencils.len(), 1 << 16);
+        if points > greatest {
+            return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
+        }
         let counts = plan.level_counts();
         self.headers.push(PlanHeader {
             ring_size: plan.ring_size as u32,
@@ -89,6 +90,7 @@ impl PackedPlans {
             next += if tangents.is_some() { 2 } else { 0 };
             number
         }));
+        Ok(())
     }
 
     /// Appends a node of its own, a B-spline of sixteen points, number x + 4 y; returns its number.
@@ -182,8 +184,9 @@ pub struct Plans<'a> {
 }
 
 impl Plans<'_> {
-    /// Point `number` of a list.
-    pub fn point(&self, number: u32) -> u32 {
-        self.points[number as usize / 2] >> (16 * (number % 2)) & 0xffff
+    /// Point `number` of a list; None beyond their end.
+    pub fn point(&self, number: u32) -> Option<u32> {
+        let pair = self.points.get(number as usize / 2)?;
+        Some(pair >> (16 * (number % 2)) & 0xffff)
     }
 }

@@ -1,5 +1,6 @@
 //! Plans of vertices: limit position and tangents, for all faces around a vertex the same where the limit has one tangent plane.
 
+use crate::error::Result;
 use crate::plan::builder::{Plan, PlanOptions, Stencil};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
@@ -37,11 +38,19 @@ pub struct Side {
 
 impl VertexPlan {
     /// Builds the plan of a vertex.
+    ///
+    /// # Errors
+    /// As [`PlanOptions::check`]; [`Misuse::Ring`](crate::Misuse::Ring) for the centre of a face where the configuration is that of an edge or vertex.
     pub fn build(
         configuration: &Configuration,
         kind: VertexKind,
         options: PlanOptions,
-    ) -> VertexPlan {
+    ) -> Result<VertexPlan> {
+        let options = options.check()?;
+        configuration.check_corners(match kind {
+            VertexKind::Control => 1,
+            VertexKind::Centre => configuration.arity(),
+        })?;
         let whole = Level::whole(configuration);
         let (mut level, mut corners) = match kind {
             VertexKind::Control => {
@@ -93,11 +102,11 @@ impl VertexPlan {
                     planes.push((plane, side));
                     sides.push(side);
                 }
-                return VertexPlan {
+                return Ok(VertexPlan {
                     plan: plan(&rows, scale, options),
                     sides,
                     planes: planes.len(),
-                };
+                });
             }
             let (next, corner) = refined(&level, &corners);
             (level, corners) = (next, corner);

@@ -28,23 +28,30 @@ fn sides(corner: u32) -> [bool; 2] {
     [corner == 1 || corner == 2, corner >= 2]
 }
 
-/// Walks the quadtree whose root is given. The tree of an edge is walked along v = 0.
-pub fn walk(plans: Plans, root: u32, uv: Vec2) -> Leaf {
+/// No tree is deeper.
+const DEEPEST: u32 = abi::HIGHEST_LEVEL + 2;
+
+/// Walks the quadtree whose root is given. The tree of an edge is walked along v = 0. None where there is no such tree.
+pub fn walk(plans: Plans, root: u32, uv: Vec2) -> Option<Leaf> {
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     let upper = uv.cmpge(Vec2::splat(0.5));
-    let mut node = plans.nodes[root as usize];
+    let mut node = *plans.nodes.get(root as usize)?;
     let mut uv = uv;
     let mut scale = 1.0;
     let mut inside = false;
-    while node.kind & 15 == abi::NODE_INTERNAL {
+    for _ in 0..=DEEPEST {
+        if node.kind & 15 != abi::NODE_INTERNAL {
+            return Some(leaf(&node, uv, scale));
+        }
         let half = |x: f32, upper: bool| if inside && upper { x > 0.5 } else { x >= 0.5 };
         let (x, y) = (half(uv.x, upper.x), half(uv.y, upper.y));
         uv = 2.0 * uv - Vec2::new(f32::from(x as u8), f32::from(y as u8));
         scale *= 2.0;
         inside = true;
-        node = plans.nodes[(node.points + x as u32 + 2 * y as u32) as usize];
+        let child = node.points.checked_add(x as u32 + 2 * y as u32)?;
+        node = *plans.nodes.get(child as usize)?;
     }
-    leaf(&node, uv, scale)
+    None
 }
 
 fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {

@@ -12,14 +12,20 @@ use crate::subdivision::split::refine_child;
 /// semi-sharp feature is gone after ten.
 const DEEPEST: u32 = 20;
 
-/// The limit position and tangents at `corner` of `face`, a triangle or quad, over the vertices of `topology`.
-pub fn deep_limit(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> LimitStencil {
-    Descent::new(topology, scheme, face).limit(corner)
+/// The limit position and tangents at `corner` of `face`, over the vertices of `topology`. None where there is no such corner.
+pub fn deep_limit(
+    topology: &Topology,
+    scheme: Scheme,
+    face: u32,
+    corner: u32,
+) -> Option<LimitStencil> {
+    let is_corner = (corner as usize) < topology.face(face).len();
+    is_corner.then(|| Descent::new(topology, scheme, face).limit(corner))
 }
 
 /// Two tangents next to `corner` of `face`, a triangle or quad: at (2^-halvings, 2^-halvings) from the corner. They span the tangent plane there and have
 /// its orientation, no more: as rows of weights they are orthonormal.
-pub fn tangents_nearby(
+pub(crate) fn tangents_nearby(
     topology: &Topology,
     scheme: Scheme,
     face: u32,
@@ -104,14 +110,17 @@ impl Descent {
     }
 
     /// Position and tangents at a corner, once a mask is known or the vertex stands for its limit.
-    fn limit_rows(mut self, corner: u32) -> [Vec<f64>; 3] {
+    fn limit_rows(mut self, mut corner: u32) -> [Vec<f64>; 3] {
         for _ in 0..DEEPEST {
             if let Some(LimitStencil { position, du, dv }) =
                 vertex_limit(&self.topology, self.scheme, 0, corner)
             {
                 return [position, du, dv].map(|mask| Vec::blend(&mask, &self.values));
             }
+            let whole = self.scheme.is_whole(self.topology.face(0).len());
             self = self.child(corner);
+            // The child of any other face begins at the corner.
+            corner = if whole { corner } else { 0 };
         }
         let (here, next, previous) = around(self.topology.face(0), corner);
         let towards = |vertex: u32| Vec::blend(&[(vertex, 1.0), (here, -1.0)], &self.values);

@@ -39,7 +39,7 @@ pub(super) enum Family {
 }
 
 /// The Catmull-Clark limit at `corner` of `face`, or None while a semi-sharp feature at the vertex or a face that is no quad asks for
-/// refinement. [`vertex_limit`](crate::subdivision::vertex_limit) does the same for any scheme.
+/// refinement, and where there is no such corner. [`vertex_limit`](crate::subdivision::vertex_limit) does the same for any scheme.
 pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<LimitStencil> {
     family_stencil(topology, face, corner, Family::Quads)
 }
@@ -52,7 +52,7 @@ pub(super) fn family_stencil(
     corner: u32,
     family: Family,
 ) -> Option<LimitStencil> {
-    let vertex = topology.face(face)[corner as usize];
+    let &vertex = topology.face(face).get(corner as usize)?;
     let mut sharp = 0;
     for edge in topology.sharp_edges(vertex) {
         if is_semi_sharp(topology.edge(edge).sharpness) {
@@ -158,9 +158,11 @@ pub fn is_unpromised(topology: &Topology, scheme: Scheme, face: u32, corner: u32
 }
 
 /// Whether the limit has a cusp at `corner` of `face`: each face of the [`fan`](Topology::fan) has a tangent plane of its own. A semi-sharp feature
-/// has no say: it is gone in the limit.
+/// has no say: it is gone in the limit. There is none where there is no such corner.
 pub fn is_cusp(topology: &Topology, face: u32, corner: u32) -> bool {
-    let vertex = topology.face(face)[corner as usize];
+    let Some(&vertex) = topology.face(face).get(corner as usize) else {
+        return false;
+    };
     let infinite = topology.sharp_edges(vertex);
     let infinite = infinite.filter(|&edge| is_infinite(topology.edge(edge).sharpness));
     is_infinite(topology.vertex_sharpness(vertex)) || infinite.count() > 2

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{ControlMesh, Placement, Scheme};
 use crate::patch::bspline;
@@ -47,8 +48,8 @@ impl LimitSample {
 /// (0,0) is v0, (1,0) v1, (1,1) v2 and (0,1) v3; of corner i of an n-gon, (0,0) is the corner, (1,0) the middle of the edge that leaves
 /// it, (1,1) the face's centre and (0,1) the middle of the edge that arrives.
 ///
-/// A normal is taken of the derivatives where these span a plane. Where they cancel, and at corners whose faces have a tangent plane each
-/// ([`TangentPlane::Face`](crate::subdivision::TangentPlane::Face)), it is taken *nearby*: of the derivatives at (1/64, 1/64) from the corner on the same ptex face. At a cusp that
+/// A normal is taken of the derivatives where these span a plane. Where they cancel, and at cusps, where each face has a tangent plane of its own
+/// ([`is_cusp`](crate::subdivision::is_cusp)), it is taken *nearby*: of the derivatives at (1/64, 1/64) from the corner on the same ptex face. At a cusp that
 /// differs from the limit as much as the limit does from the rest of the picture. All this is decided by `normals.rs` beside this file.
 #[derive(Clone, Debug)]
 pub struct LimitSurface {
@@ -77,17 +78,21 @@ const DEEPEST: i32 = 60;
 impl LimitSurface {
     /// The limit of a mesh under its own scheme.
     pub fn new(mesh: &ControlMesh) -> LimitSurface {
-        LimitSurface::of_scheme(mesh, mesh.options().scheme)
+        LimitSurface::under(mesh, mesh.options().scheme)
     }
 
     /// The limit of a mesh under a scheme that may not be its own.
-    pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
-        let topology = Topology::under(mesh, scheme);
-        LimitSurface::of_topology(topology, mesh.positions().to_vec(), scheme)
+    ///
+    /// # Errors
+    /// As [`Scheme::check`].
+    pub fn of_scheme(mesh: &ControlMesh, scheme: Scheme) -> Result<LimitSurface> {
+        scheme.check(mesh)?;
+        Ok(LimitSurface::under(mesh, scheme))
     }
 
-    /// The limit of a topology, such as one that was refined, with a position for each of its vertices.
-    pub fn of_topology(topology: Topology, positions: Vec<DVec3>, scheme: Scheme) -> LimitSurface {
+    fn under(mesh: &ControlMesh, scheme: Scheme) -> LimitSurface {
+        let topology = Topology::under(mesh, scheme);
+        let positions = mesh.positions();
         let is_used = |vertex: usize| !topology.vertex_faces(vertex as u32).is_empty();
         let used = (0..positions.len()).filter(|&vertex| is_used(vertex));
         let Placement { scale, .. } = Placement::of(used.map(|vertex| positions[vertex]));
@@ -96,7 +101,7 @@ impl LimitSurface {
             true => position / scale,
             false => DVec3::ZERO,
         };
-        let positions = positions.into_iter().enumerate().map(scaled).collect();
+        let positions = positions.iter().copied().enumerate().map(scaled).collect();
         LimitSurface::of_scaled(topology, scale, positions, scheme)
     }
 
@@ -134,9 +139,10 @@ impl LimitSurface {
         LimitSurface::of_scaled(topology, self.scale, positions, self.scheme)
     }
 
-    /// The position of a vertex of the mesh, which is not its limit; the origin for one that no face uses.
+    /// The position of a vertex of the mesh, which is not its limit; the origin for one that no face uses, and where there is none.
     pub fn position(&self, vertex: u32) -> DVec3 {
-        self.scale * self.positions[vertex as usize]
+        let position = self.positions.get(vertex as usize);
+        self.scale * position.copied().unwrap_or_default()
     }
 
     /// The scheme.
@@ -154,12 +160,9 @@ impl LimitSurface {
         self.ptex.len()
     }
 
-    /// The face of a ptex number and its corner there (0 for quads).
-    ///
-    /// # Panics
-    /// Where there is no such ptex face.
-    pub fn face_corner(&self, ptex: usize) -> (u32, u32) {
-        self.ptex[ptex]
+    /// The face of a ptex number and its corner there (0 for quads); None where there is no such ptex face.
+    pub fn face_corner(&self, ptex: usize) -> Option<(u32, u32)> {
+        self.ptex.get(ptex).copied()
     }
 
     /// The limit at (u, v) of a ptex face; what lies outside of 0..=1 is moved to its end. None in a hole, where there is no such face, and where u

@@ -13,23 +13,28 @@ pub type Mask = SmallVec<[(u32, f64); 21]>;
 
 /// What masks can be applied to: positions, or rows of weights.
 pub trait Blend: Sized {
-    /// The sum of `values[vertex] * weight` over the mask.
+    /// The sum of `values[vertex] * weight` over the mask. A vertex without a value adds nothing.
     fn blend(mask: &[(u32, f64)], values: &[Self]) -> Self;
 }
 
 impl Blend for DVec3 {
     fn blend(mask: &[(u32, f64)], values: &[DVec3]) -> DVec3 {
-        mask.iter()
-            .map(|&(vertex, weight)| values[vertex as usize] * weight)
-            .sum()
+        let values = mask.iter().filter_map(|&(vertex, weight)| {
+            let value = values.get(vertex as usize)?;
+            Some(*value * weight)
+        });
+        values.sum()
     }
 }
 
 impl Blend for Vec<f64> {
     fn blend(mask: &[(u32, f64)], values: &[Vec<f64>]) -> Vec<f64> {
-        let mut sum = vec![0.0; values[0].len()];
+        let mut sum = vec![0.0; values.first().map_or(0, Vec::len)];
         for &(vertex, weight) in mask {
-            for (sum, value) in sum.iter_mut().zip(&values[vertex as usize]) {
+            for (sum, value) in sum
+                .iter_mut()
+                .zip(values.get(vertex as usize).into_iter().flatten())
+            {
                 *sum += weight * value;
             }
         }
@@ -42,7 +47,7 @@ impl Blend for Mask {
     fn blend(mask: &[(u32, f64)], values: &[Mask]) -> Mask {
         let mut sum = Mask::new();
         for &(value, weight) in mask {
-            for &(vertex, part) in &values[value as usize] {
+            for &(vertex, part) in values.get(value as usize).into_iter().flatten() {
                 match sum.iter_mut().find(|(known, _)| *known == vertex) {
                     Some((_, total)) => *total += weight * part,
                     None => sum.push((vertex, weight * part)),
@@ -150,6 +155,10 @@ pub fn vertex_point(topology: &Topology, vertex: u32) -> Mask {
 
 /// The mask of a vertex point of any scheme whose creases are cubic B-splines.
 pub(super) fn vertex_point_with(topology: &Topology, vertex: u32, smooth: Smooth) -> Mask {
+    if topology.vertex_edges(vertex).is_empty() {
+        // No face uses it; means over no neighbours would be no numbers.
+        return Mask::from_slice(&[(vertex, 1.0)]);
+    }
     let now = topology.vertex_sharpness(vertex);
     let next = crate::mesh::sharpness::decayed(now);
     let sharp: SmallVec<[u32; 4]> = topology.sharp_edges(vertex).collect();

@@ -15,18 +15,17 @@ mod schemes;
 mod split;
 
 pub use crate::mesh::Scheme;
-pub use box_patch::box_spline_patch;
-pub use curve::{EdgeCurve, edge_curve};
-pub(crate) use deep::orthonormal;
-pub use deep::{deep_limit, tangents_nearby};
-pub use limit::{
-    LimitStencil, TangentPlane, closing_tangents, is_cusp, is_unpromised, limit_stencil,
-    tangent_plane,
-};
+pub(crate) use box_patch::box_spline_patch;
+pub(crate) use curve::{EdgeCurve, edge_curve};
+pub use deep::deep_limit;
+pub(crate) use deep::{orthonormal, tangents_nearby};
+pub use limit::{LimitStencil, is_cusp, limit_stencil};
+pub(crate) use limit::{TangentPlane, closing_tangents, is_unpromised, tangent_plane};
 pub use limit_surface::{LimitSample, LimitSurface};
-pub use masks::{Blend, Mask, edge_point, face_point, vertex_point};
-pub use refine::{Refinement, refine, refine_edge};
-pub use regular::{BsplinePatch, ControlPoint, bspline_patch};
+pub use masks::{Blend, Mask};
+pub(crate) use refine::refine_edge;
+pub use refine::{Refinement, refine};
+pub(crate) use regular::{BsplinePatch, ControlPoint, bspline_patch};
 pub(crate) use schemes::rings as scheme_rings;
 pub use schemes::vertex_limit;
 pub use split::refine_all;

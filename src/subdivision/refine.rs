@@ -61,11 +61,14 @@ pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
     all
 }
 
-/// Refines the given children, each a face and a corner of it, with everything that touches them.
+/// Refines the given children, each a face and a corner of it, with everything that touches them. Those of corners that the topology has not are left
+/// out.
 pub fn refine(parent: &Topology, cells: &[(u32, u32)]) -> Refinement {
+    let is_corner = |&(face, corner): &(u32, u32)| (corner as usize) < parent.face(face).len();
+    let cells: SmallVec<[(u32, u32); 8]> = cells.iter().copied().filter(is_corner).collect();
     let mut step = Step::new(parent);
     let mut faces: Vec<[u32; 4]> = Vec::with_capacity(4 * cells.len() + 12);
-    for &(face, corner) in cells {
+    for &(face, corner) in &cells {
         faces.push(child(parent, face, corner).map(|origin| step.number(origin)));
     }
     let mut parents: Vec<u32> = cells.iter().map(|&(face, _)| face).collect();

@@ -212,8 +212,8 @@ pub(crate) fn ring_vertices(segments: u32) -> u32 {
 
 /// The plan level that tess levels need: ceil(log2 of the greatest), at most `max_level`.
 pub fn required_level(levels: &Levels, max_level: u32) -> u32 {
-    (0..max_level)
-        .find(|&level| (1u64 << level.min(63)) as f32 >= levels.greatest())
+    (0..max_level.min(64))
+        .find(|&level| (1u64 << level) as f32 >= levels.greatest())
         .unwrap_or(max_level)
 }
 

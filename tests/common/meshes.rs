@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use hullform::mesh::{
-    BoundaryInterpolation, ControlMesh, CreaseMethod, SchemeOptions, TriangleSubdivision,
+    BoundaryInterpolation, ControlMesh, ControlMeshBuilder, CreaseMethod, SchemeOptions,
+    TriangleSubdivision,
 };
 use proptest::prelude::*;
 
@@ -409,4 +410,20 @@ pub fn cases(cases: u32) -> ProptestConfig {
         config.rng_seed = proptest::test_runner::RngSeed::Fixed(2016);
     }
     config
+}
+
+/// A mesh in the making with the options and tags of another, whose vertices and faces have the same numbers.
+pub fn tagged_as(mesh: &ControlMesh, builder: ControlMeshBuilder) -> ControlMesh {
+    let mut builder = builder.options(mesh.options());
+    for crease in mesh.creases() {
+        let [a, b] = crease.vertices;
+        builder = builder.crease(a, b, crease.sharpness);
+    }
+    for corner in mesh.corners() {
+        builder = builder.corner(corner.vertex, corner.sharpness);
+    }
+    for &hole in mesh.holes() {
+        builder = builder.hole(hole);
+    }
+    builder.build().expect("it was sound before")
 }

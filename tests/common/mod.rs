@@ -1,5 +1,5 @@
 //! What several tests share: the models and shapes beside the project, where they are.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -13,6 +13,7 @@ pub mod surfaces;
 
 use std::path::PathBuf;
 
+use hullform::mesh::topology::{FaceCorner, Fan, Topology};
 use hullform::mesh::{ControlMesh, read_obj};
 
 /// The folder beside the project that holds models and conformance shapes; None elsewhere than where it is developed.
@@ -45,6 +46,12 @@ pub fn obj_files(folder: &str) -> Vec<PathBuf> {
 pub fn model(name: &str) -> Option<ControlMesh> {
     let path = shared("models")?.join(format!("{name}.obj"));
     Some(read_obj(&path).expect("the shared models are sound"))
+}
+
+/// The fan at a corner that there is.
+pub fn fan_at(topology: &Topology, face: u32, corner: u32) -> Fan {
+    let fan = topology.fan_at(FaceCorner { face, corner });
+    fan.expect("the face has the corner")
 }
 
 /// The diagonal of a mesh's bounding box.

@@ -8,7 +8,7 @@ use ash::vk;
 use failing_driver::Fault;
 
 use crate::common::cli::has_device;
-use crate::trial::{Bench, Outcome, Program, is_there};
+use crate::trial::{Bench, Outcome, Program, example, is_there, program};
 
 /// What calls return.
 const CODES: [vk::Result; 3] = [
@@ -36,132 +36,38 @@ const LONG: [&str; 2] = ["verify caches", "edges"];
 
 /// Every way that the program and the examples have to Vulkan, with little to draw.
 const PROGRAMS: [Program; 10] = [
-    program("devices", &["devices", "--device", "0"]),
+    program("devices", "devices --device 0"),
     program(
         "render",
-        &[
-            "render",
-            "builtin:cube",
-            "--size",
-            "32x24",
-            "--level",
-            "4",
-            "--method",
-            "flat",
-            "--wireframe",
-            "-o",
-            "OUT/a.png",
-            "--stats",
-            "OUT/a.json",
-        ],
+        "render builtin:cube --size 32x24 --level 4 --method flat --wireframe -o OUT/a.png --stats OUT/a.json",
     ),
     program(
         "render by patterns",
-        &[
-            "render",
-            "builtin:cube",
-            "--size",
-            "32x24",
-            "--level",
-            "4",
-            "--method",
-            "pn",
-            "--backend",
-            "pattern",
-            "--points",
-            "device",
-            "-o",
-            "OUT/a.png",
-        ],
+        "render builtin:cube --size 32x24 --level 4 --method pn --backend pattern --points device -o OUT/a.png",
     ),
     program(
         "tessellate",
-        &[
-            "tessellate",
-            "builtin:cube",
-            "--level",
-            "4",
-            "--method",
-            "flat",
-            "-o",
-            "OUT/a.csv",
-        ],
+        "tessellate builtin:cube --level 4 --method flat -o OUT/a.csv",
     ),
     program(
         "tessellate in batches",
-        &[
-            "tessellate",
-            "builtin:cube",
-            "--level",
-            "4",
-            "--ring-bytes",
-            "4KiB",
-            "--slots",
-            "host",
-            "-o",
-            "OUT/a.ply",
-        ],
+        "tessellate builtin:cube --level 4 --ring-bytes 4KiB --slots host -o OUT/a.ply",
     ),
     program(
         "compare",
-        &[
-            "compare",
-            "builtin:cube",
-            "--size",
-            "32x24",
-            "--level",
-            "4",
-            "--methods",
-            "flat,phong",
-            "--costs",
-            "1",
-            "-o",
-            "OUT/a.png",
-        ],
+        "compare builtin:cube --size 32x24 --level 4 --methods flat,phong --costs 1 -o OUT/a.png",
     ),
     program(
         "verify",
-        &[
-            "verify",
-            "--jobs",
-            "1",
-            "--filter",
-            "coordinates.isolines-equal.counts",
-            "--csv",
-            "OUT/a.csv",
-        ],
+        "verify --jobs 1 --filter coordinates.isolines-equal.counts --csv OUT/a.csv",
     ),
     program(
         "verify caches",
-        &[
-            "verify",
-            "--jobs",
-            "1",
-            "--filter",
-            "determinism.cache.pole-64-equal",
-            "--csv",
-            "OUT/a.csv",
-        ],
+        "verify --jobs 1 --filter determinism.cache.pole-64-equal --csv OUT/a.csv",
     ),
-    Program {
-        name: "headless_png",
-        example: Some("headless_png"),
-        arguments: &[],
-    },
-    Program {
-        name: "edges",
-        example: Some("edges"),
-        arguments: &["--levels", "1", "cube"],
-    },
+    example("headless_png", ""),
+    example("edges", "--levels 1 cube"),
 ];
-
-const fn program(name: &'static str, arguments: &'static [&'static str]) -> Program {
-    Program {
-        name,
-        example: None,
-        arguments,
-    }
-}
 
 /// A failure to be tried.
 struct Trial {

@@ -14,7 +14,26 @@ pub struct Program {
     pub name: &'static str,
     /// An example of ours instead of `hullform`.
     pub example: Option<&'static str>,
-    pub arguments: &'static [&'static str],
+    /// With spaces between; none has one in it.
+    pub arguments: &'static str,
+}
+
+/// What `hullform` does with arguments.
+pub const fn program(name: &'static str, arguments: &'static str) -> Program {
+    Program {
+        name,
+        example: None,
+        arguments,
+    }
+}
+
+/// An example of ours with arguments.
+pub const fn example(name: &'static str, arguments: &'static str) -> Program {
+    Program {
+        name,
+        example: Some(name),
+        arguments,
+    }
 }
 
 /// A place to run programs in, with a failing driver of its own.
@@ -47,10 +66,10 @@ impl Bench {
     /// Runs a program to its end, and takes away what it wrote.
     pub fn run(&self, program: Program, fault: &Fault) -> Outcome {
         let out = self.out.to_str().expect("a plain path");
-        let arguments = program.arguments.iter();
+        let arguments = program.arguments.split_whitespace();
         let arguments: Vec<String> = arguments.map(|word| word.replace("OUT", out)).collect();
         let mut command = match program.example {
-            Some(name) => Command::new(example(name)),
+            Some(name) => Command::new(path_of(name)),
             None => hullform(&[]),
         };
         command.args(&arguments).current_dir(&self.out);
@@ -113,7 +132,7 @@ fn taken(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 /// Where cargo puts examples. `cargo test` builds them, `cargo test --test drivers` does not.
-pub fn example(name: &str) -> PathBuf {
+pub fn path_of(name: &str) -> PathBuf {
     let test = std::env::current_exe().expect("a test knows where it is");
     let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
     profile.join("examples").join(name)
@@ -121,7 +140,7 @@ pub fn example(name: &str) -> PathBuf {
 
 /// Whether a program is there; says so if not.
 pub fn is_there(program: Program) -> bool {
-    let missing = program.example.filter(|name| !example(name).is_file());
+    let missing = program.example.filter(|name| !path_of(name).is_file());
     if let Some(name) = missing {
         println!("skipped: the example {name} is not built; cargo build --example {name}");
     }

@@ -9,16 +9,7 @@ use crate::trial::{Bench, Program};
 const RENDER: Program = Program {
     name: "render",
     example: None,
-    arguments: &[
-        "render",
-        "builtin:hull",
-        "--size",
-        "64x48",
-        "--level",
-        "8",
-        "-o",
-        "OUT/a.png",
-    ],
+    arguments: "render builtin:hull --size 64x48 --level 8 -o OUT/a.png",
 };
 
 /// `calls` fail for good, from the first on.

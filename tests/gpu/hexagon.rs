@@ -9,8 +9,8 @@ use hullform::subdivision::{
 };
 use hullform::tessellation::Spacing;
 
-use crate::common;
 use crate::common::gpu::{Gpu, capturing, cut, prepare};
+use crate::common::{self, fan_at};
 use crate::shapes;
 
 /// Where the six places of a triangle are: corners, then the middles of the edges from corner i to corner i + 1.
@@ -84,7 +84,7 @@ impl Truth {
         if place < 3 && is_cusp(topology, face, corner) {
             // Each face has a normal of its own, and a method the mean of those between two infinite creases.
             let vertex = topology.face(face)[place];
-            let around = topology.fan(face, corner).faces;
+            let around = fan_at(topology, face, corner).faces;
             let each = around.iter().map(|&face| {
                 let corner = topology.face(face).iter().position(|&v| v == vertex);
                 let corner = corner.expect("the fan is the vertex' own");
@@ -122,6 +122,7 @@ impl Truth {
         let topology = &self.refined.topology;
         let known = vertex_limit(topology, self.scheme, child, corner).is_some();
         let limit = deep_limit(topology, self.scheme, child, corner);
+        let limit = limit.expect("children have three corners");
         let mut angles = 0.0;
         let mut directions = [DVec3::ZERO; 2];
         for (tangent, direction) in [&limit.du, &limit.dv].into_iter().zip(&mut directions) {
@@ -144,7 +145,7 @@ impl Truth {
         };
         let own = normal(&self.surface, face, place).expect("holes are not drawn");
         let vertex = topology.face(child)[corner as usize];
-        let around = topology.fan(child, corner).faces;
+        let around = fan_at(topology, child, corner).faces;
         let turns = around.iter().filter_map(|&face| {
             let corner = topology.face(face).iter().position(|&v| v == vertex);
             let other = normal(&self.finer, face, corner.expect("it is in the fan"));

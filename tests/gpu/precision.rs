@@ -60,7 +60,7 @@ pub fn from_truth(
             return from_twin(model, prepared, frame, step);
         }
     };
-    let truth = LimitSurface::of_scheme(model.mesh(), scheme);
+    let truth = LimitSurface::of_scheme(model.mesh(), scheme).expect("it takes the mesh");
     let diagonal = model.diagonal();
     let mut worst = Worst::default();
     for (pass, vertex) in sampled(prepared, frame, step) {

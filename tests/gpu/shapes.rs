@@ -3,6 +3,7 @@
 use hullform::mesh::{ControlMesh, Model, Scheme, Triangulation, builtin, read_obj, triangulated};
 
 use crate::common;
+use crate::common::meshes::tagged_as;
 
 /// The built-in shapes that have a name of their own, and one each of those with numbers.
 pub const BUILTINS: [&str; 8] = [
@@ -102,16 +103,5 @@ pub fn moved(mesh: &ControlMesh, scale: f64, by: [f64; 3]) -> ControlMesh {
         .collect();
     let sizes: Vec<u32> = mesh.faces().map(|face| face.len() as u32).collect();
     let vertices: Vec<u32> = mesh.faces().flatten().copied().collect();
-    let mut builder = ControlMesh::builder(&positions, &sizes, &vertices).options(mesh.options());
-    for crease in mesh.creases() {
-        let [a, b] = crease.vertices;
-        builder = builder.crease(a, b, crease.sharpness);
-    }
-    for corner in mesh.corners() {
-        builder = builder.corner(corner.vertex, corner.sharpness);
-    }
-    for &hole in mesh.holes() {
-        builder = builder.hole(hole);
-    }
-    builder.build().expect("a sound mesh stays sound")
+    tagged_as(mesh, ControlMesh::builder(&positions, &sizes, &vertices))
 }

@@ -61,14 +61,25 @@ pub struct Seen {
 
 impl Adaptive {
     /// The tags of control vertices in local units; `level` is the greatest level.
-    pub fn tags(self, outline: &Outline, vertices: &[Vec3], level: f32, seen: Seen) -> DepthTags {
+    pub fn tags(
+        self,
+        outline: &Outline,
+        vertices: &[Vec3],
+        level: f32,
+        seen: Seen,
+    ) -> hullform::Result<DepthTags> {
         match self {
             Adaptive::Distance(near) => {
                 let distances = vertices.iter().map(|vertex| vertex.distance(seen.eye));
                 let nearest = distances.fold(f32::INFINITY, f32::min);
                 let near = near.map_or(nearest, |near| (near / seen.scale) as f32);
                 let near = near.clamp(f32::MIN_POSITIVE, f32::MAX);
-                DepthTags::by_distance(vertices, seen.eye, near, level.log2())
+                Ok(DepthTags::by_distance(
+                    vertices,
+                    seen.eye,
+                    near,
+                    level.log2(),
+                ))
             }
             Adaptive::Screen(pixels) => {
                 let clip = seen.clip_from_model.to_cols_array_2d();

@@ -3,8 +3,9 @@
 use std::sync::Once;
 
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Method, Prepared};
+use hullform::method::{METHODS, Prepared, method};
 use hullform::subdivision::LimitSurface;
+use hullform::{Error, Result};
 
 use crate::compare::errors::{Reference, Twin};
 
@@ -23,9 +24,11 @@ const POINTS: [[f32; 2]; 5] = [
 /// What rounding leaves of the limit, over the diagonal.
 const ROUNDING: f64 = 1e-6;
 
-/// Says, once, that a method approximates, how far off it is, and why no other draws the limit.
-pub fn tell(model: &Model, method: &Method, prepared: &Prepared) {
+/// Says, once, that a method approximates, how far off it is, and why no other draws the limit; `refusals` are those of methods that could have drawn the
+/// model.
+pub fn tell(model: &Model, prepared: &Prepared, refusals: &[Error]) -> Result<()> {
     static ONCE: Once = Once::new();
+    let method = method(prepared.method)?;
     ONCE.call_once(|| {
         let scheme = model.mesh().options().scheme;
         let off = if method.contract.reproduces.is_limit(scheme) {
@@ -39,25 +42,28 @@ pub fn tell(model: &Model, method: &Method, prepared: &Prepared) {
                 method.name,
                 scheme,
                 100.0 * off,
-                why(model)
+                why(model, refusals)
             );
         }
     });
+    Ok(())
 }
 
 /// Why no method draws the limit.
-fn why(model: &Model) -> String {
+fn why(model: &Model, refusals: &[Error]) -> String {
     let scheme = model.mesh().options().scheme;
     let exact = METHODS.iter().filter(|method| {
         method.contract.reproduces.is_limit(scheme) && method.check(scheme).is_ok()
     });
+    let mut later = refusals.iter();
     let refusals: Vec<String> = exact
         .filter_map(|method| {
-            let refusal = method.check_model(model).err()?;
-            Some(format!(
-                "{} would draw the limit, but: {refusal}",
-                method.name
-            ))
+            let name = method.name;
+            let refusal = match method.check_model(model) {
+                Err(refusal) => refusal.to_string(),
+                Ok(()) => later.next()?.to_string(),
+            };
+            Some(format!("{name} would draw the limit, but: {refusal}"))
         })
         .collect();
     match refusals.as_slice() {

@@ -62,7 +62,7 @@ pub fn capture(
     let mut surface = Surface::default();
     for batch in list.batches() {
         let captured = capture_batch(gpu, &drawing, &target, &pipelines, batch)?;
-        add_patches(&mut surface, &captured, model, &drawing, batch);
+        add_patches(&mut surface, &captured, model, &drawing, batch)?;
     }
     Ok(surface)
 }
@@ -136,21 +136,30 @@ fn add_patches(
     model: &Model,
     drawing: &Drawing<'_>,
     batch: Batch<'_>,
-) {
+) -> Result<()> {
     let prepared = drawing.surface().prepared();
     let pass = &prepared.passes[batch.pass()];
     let placement = model.placement();
     for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {
         let number = vertices[0].patch_number;
-        let patch = &pass.patches[number as usize];
+        let Some(patch) = pass.patches.get(number as usize) else {
+            return Err(Error::Refused(format!(
+                "the device captured a vertex of patch {number}, and there are {}; choose another device, or update its driver",
+                pass.patches.len()
+            )));
+        };
         let first = surface.points.len() as u32;
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
         let triangles = batch
             .list()
             .triangles(prepared, batch.pass(), number, &uv)
-            .into_iter()
-            .map(|triangle| triangle.map(|i| first + i));
-        surface.triangles.extend(triangles);
+            .ok_or_else(|| Error::Lost {
+                what: format!("vertices of a patch of face {}", patch.ptex),
+            })?;
+        let triangles = triangles.into_iter();
+        surface
+            .triangles
+            .extend(triangles.map(|triangle| triangle.map(|i| first + i)));
         surface.points.extend(vertices.iter().map(|vertex| {
             Point {
                 face: patch.ptex,
@@ -163,4 +172,5 @@ fn add_patches(
             }
         }));
     }
+    Ok(())
 }

@@ -14,7 +14,7 @@ use hullform::method::{DepthTags, Displacement, Prepared};
 use hullform::tessellation::Spacing;
 use hullform::{Error, Result};
 
-use crate::adaptive::Seen;
+use crate::adaptive::{Adaptive, Seen};
 use crate::approximation;
 use crate::camera;
 use crate::gpu::Gpu;
@@ -49,9 +49,9 @@ impl<'a> Drawing<'a> {
 
     /// Prepares a model by a method, and says when that only approximates what nobody asked to be approximated.
     pub fn prepare(model: &Model, chosen: Chosen) -> Result<Prepared> {
-        let prepared = chosen.prepare(model)?;
+        let (prepared, refusals) = chosen.prepare(model)?;
         if chosen.by_default {
-            approximation::tell(model, chosen.method, &prepared);
+            approximation::tell(model, &prepared, &refusals)?;
         }
         Ok(prepared)
     }
@@ -149,7 +149,7 @@ impl<'a> Drawing<'a> {
         cutting: Cutting,
         view: &camera::View,
         size: [f32; 2],
-    ) -> Option<DepthTags> {
+    ) -> Result<Option<DepthTags>> {
         let seen = Seen {
             clip_from_model: view.clip_from_model,
             eye: view.eye,
@@ -158,8 +158,8 @@ impl<'a> Drawing<'a> {
         };
         let outline = &self.surface().prepared().outline;
         let level = cutting.cut.level;
-        let adaptive = cutting.adaptive?;
-        Some(adaptive.tags(outline, &model.positions(), level, seen))
+        let tags = |adaptive: Adaptive| adaptive.tags(outline, &model.positions(), level, seen);
+        cutting.adaptive.map(tags).transpose()
     }
 
     /// What is drawn at a cut, with what the host decides about patches on the device.

@@ -89,7 +89,8 @@ impl Subject<'_> {
                 positions.extend(captured.map(|vertex| Vec3::from(vertex.position)));
             }
             let view = camera.frame(&positions, size[0] / size[1]);
-            Ok((view, drawing.tags(self.model, self.cutting, &view, size)))
+            let tags = drawing.tags(self.model, self.cutting, &view, size)?;
+            Ok((view, tags))
         };
         let (view, tags) = frame(self.coarse(), None)?;
         if tags.is_none() || self.displacement.height == 0.0 {

@@ -7,6 +7,7 @@ use hullform::Error;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{
     METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method, method_for,
+    prepare_by_default,
 };
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -201,12 +202,17 @@ pub struct Chosen {
     pub options: MethodOptions,
     /// Whether nobody asked for it.
     pub by_default: bool,
+    /// Whether another may stand in for it, where it refuses the model: nobody asked for options of its own either.
+    pub replaceable: bool,
 }
 
 impl Chosen {
-    /// Prepares a model.
-    pub fn prepare(&self, model: &Model) -> hullform::Result<Prepared> {
-        self.method.prepare(model, self.options)
+    /// Prepares a model; with the reasons why methods that come before the one that did it refused.
+    pub fn prepare(&self, model: &Model) -> hullform::Result<(Prepared, Vec<Error>)> {
+        match self.replaceable {
+            true => prepare_by_default(model, self.options),
+            false => Ok((self.method.prepare(model, self.options)?, Vec::new())),
+        }
     }
 }
 
@@ -338,6 +344,7 @@ impl Cut {
             method,
             options,
             by_default: self.method.is_none(),
+            replaceable: self.method.is_none() && self.tables.asked().is_none(),
         })
     }
 

@@ -356,7 +356,7 @@ fn statistics(
     Ok(json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": scene.chosen.method.name,
+        "method": drawing.surface().prepared().method,
         "level": scene.cutting.cut.level,
         "backend": scene.cutting.backend.name(),
         "spacing": scene.cutting.cut.spacing.name(),

@@ -54,7 +54,7 @@ pub fn shoot_with(
     let room = room(table);
     let sizes = [size_of_val(table) as u64, 4 + 16 * u64::from(room)];
     let mut raw = Raw::new(device, &sizes, SIDE)?;
-    raw.write(0, table);
+    raw.write(0, table)?;
     let pipeline = raw.pipeline(&Program {
         control: Cow::Borrowed(module("coordinates.tesc")?),
         evaluation: Cow::Owned(modes.rewrite(module("coordinates.tese")?)),

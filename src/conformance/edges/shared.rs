@@ -162,7 +162,8 @@ impl<'a> Shared<'a> {
     pub fn add(&mut self, pass: &Pass, vertex: &Captured) {
         let patch = &pass.patches[vertex.patch_number as usize];
         let uv = to_ptex(patch, vertex.uv);
-        let (face, corner) = self.numbers.face_corner(patch.ptex as usize);
+        let place = self.numbers.face_corner(patch.ptex as usize);
+        let (face, corner) = place.expect("patches are of ptex faces");
         let bits = (
             vertex.position.map(f32::to_bits),
             vertex.normal.map(f32::to_bits),

@@ -34,9 +34,17 @@ impl<T: Copy + Default> Lists<T> {
         Lists { offsets, items }
     }
 
-    /// The list with number `list`.
-    pub fn get(&self, list: u32) -> &[T] {
-        &self.items[self.offsets[list as usize] as usize..self.offsets[list as usize + 1] as usize]
+    /// The list with number `number`; empty where there is none.
+    pub fn get(&self, number: u32) -> &[T] {
+        list(&self.offsets, &self.items, number)
+    }
+}
+
+/// One of the lists that stand one after another in `items`, each from its offset to the next; empty where there is none of that number.
+pub(super) fn list<'a, T>(offsets: &[u32], items: &'a [T], number: u32) -> &'a [T] {
+    match offsets.get(number as usize..) {
+        Some(&[start, end, ..]) => &items[start as usize..end as usize],
+        _ => &[],
     }
 }
 

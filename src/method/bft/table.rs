@@ -135,7 +135,8 @@ fn limit_tangents(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -
 
 fn limit(topology: &Topology, scheme: Scheme, face: u32, corner: u32) -> LimitStencil {
     let known = vertex_limit(topology, scheme, face, corner);
-    known.unwrap_or_else(|| deep_limit(topology, scheme, face, corner))
+    let limit = known.or_else(|| deep_limit(topology, scheme, face, corner));
+    limit.expect("faces have their corners")
 }
 
 /// The faces of the cells, which come first, and rings of faces around them.

@@ -225,6 +225,7 @@ impl Rows<'_> {
     /// The limit at a vertex of the refined mesh, seen from a face, over the control vertices.
     fn limit(&self, face: u32, vertex: u32) -> LimitStencil {
         let limit = deep_limit(self.refined, self.scheme, face, self.corner(face, vertex));
+        let limit = limit.expect("the face has this vertex");
         let over_controls = |mask: &Mask| Mask::blend(mask, self.masks);
         LimitStencil {
             position: over_controls(&limit.position),

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::abi;
+use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
 use crate::method::quadtree::plain::{
@@ -52,7 +53,7 @@ enum Point {
 trait Subject: Copy + Eq + std::hash::Hash + Send + Sync {
     type Plan: Send + Sync;
     fn ring(self, topology: &Topology) -> Ring;
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Self::Plan;
+    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<Self::Plan>;
     fn stencils(plan: &Self::Plan) -> &Plan;
     /// Whether it lies inside an n-gon: the configuration is the n-gon's then.
     fn is_inside(self) -> bool;
@@ -66,9 +67,10 @@ impl Subject for Line {
             Line::Edge(edge) => Ring::of_edge(topology, edge),
             Line::Spoke { face, corner } => Ring::from_corner(topology, face, corner),
         }
+        .expect("lines are the topology's own")
     }
 
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> EdgePlan {
+    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<EdgePlan> {
         let kind = if self.is_inside() {
             EdgeKind::Spoke
         } else {
@@ -94,9 +96,10 @@ impl Subject for Point {
             Point::Vertex(vertex) => Ring::of_vertex(topology, vertex),
             Point::Centre(face) => Ring::from_corner(topology, face, 0),
         }
+        .expect("points are the topology's own")
     }
 
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> VertexPlan {
+    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<VertexPlan> {
         let kind = if self.is_inside() {
             VertexKind::Centre
         } else {
@@ -129,7 +132,7 @@ impl<S: Subject> Shared<S> {
         subjects: impl Iterator<Item = S>,
         packed: &mut PackedPlans,
         options: PlanOptions,
-    ) -> Shared<S> {
+    ) -> Result<Shared<S>> {
         let mut seen = FxHashSet::default();
         let subjects: Vec<S> = subjects.filter(|&subject| seen.insert(subject)).collect();
         let rings: Vec<Ring> = subjects
@@ -149,18 +152,21 @@ impl<S: Subject> Shared<S> {
                 })
             })
             .collect();
-        let built: Vec<S::Plan> = firsts
+        let built: Result<Vec<S::Plan>> = firsts
             .par_iter()
             .map(|&i| subjects[i].build(&rings[i].configuration, options))
             .collect();
+        let built = built?;
         let first = packed.headers.len() as u32;
-        built.iter().for_each(|plan| packed.push(S::stencils(plan)));
+        for plan in &built {
+            packed.push(S::stencils(plan))?;
+        }
         let rings = rings.into_iter().zip(plans);
-        Shared {
+        Ok(Shared {
             known: subjects.into_iter().zip(rings).collect(),
             plans: built,
             first,
-        }
+        })
     }
 }
 
@@ -232,14 +238,14 @@ impl Borders {
         patches: &[Irregular],
         packed: &mut PackedPlans,
         options: PlanOptions,
-    ) -> Borders {
+    ) -> Result<Borders> {
         let lines = patches.iter().flat_map(|patch| {
             let lines = lines(topology, patch.part, patch.turn(topology));
             lines.into_iter().map(|(line, ..)| line)
         });
         let lines = lines
             .filter(|&line| !matches!(line, Line::Edge(edge) if is_plain_edge(topology, edge)));
-        let lines = Shared::new(topology, lines, packed, options);
+        let lines = Shared::new(topology, lines, packed, options)?;
         let vertices = patches.iter().flat_map(|patch| {
             let points = points(topology, patch.part, patch.turn(topology));
             points.into_iter().flatten()
@@ -247,7 +253,7 @@ impl Borders {
         let vertices = vertices.filter(
             |&point| !matches!(point, Point::Vertex(vertex) if is_plain_vertex(topology, vertex)),
         );
-        let vertices = Shared::new(topology, vertices, packed, options);
+        let vertices = Shared::new(topology, vertices, packed, options)?;
         let mut builder = Builder {
             topology,
             lines: &lines,
@@ -267,7 +273,7 @@ impl Borders {
             let number = builder.number(border);
             builder.found.numbers.push(number);
         }
-        builder.found
+        Ok(builder.found)
     }
 }
 

@@ -234,6 +234,7 @@ impl Use<'_> {
     fn evaluate(&self, ring: &[Vec3], uv: Vec2, side: u32) -> Surface {
         let quarter = u32::from(uv.x >= 0.5) + 2 * u32::from(uv.y >= 0.5);
         let leaf = walk(self.plans, self.border.roots[self.number], uv);
+        let leaf = leaf.expect("borders have the roots of packed trees");
         let Leaf {
             points,
             uv,
@@ -248,7 +249,8 @@ impl Use<'_> {
         }
         let points = points + 16 * side;
         let surface = bspline(u, v, scale, |x, y| {
-            self.point(ring, self.plans.point(points + x as u32 + 4 * y as u32))
+            let number = self.plans.point(points + x as u32 + 4 * y as u32);
+            self.point(ring, number.expect("leaves have their points"))
         });
         let base = if scale >= RELATIVE {
             self.point(ring, quarter)

@@ -147,7 +147,7 @@ fn next_on_curve(topology: &Topology, edge: u32, vertex: u32) -> Option<u32> {
 /// The limit at an interior vertex without creases, once its neighbours are regular: the vertex itself, and the tangents of the double eigenvalue
 /// 1/2. Beside boundaries and creases no mask is given.
 pub(super) fn limit(topology: &Topology, face: u32, corner: u32) -> Option<LimitStencil> {
-    let vertex = topology.face(face)[corner as usize];
+    let &vertex = topology.face(face).get(corner as usize)?;
     let fan = closed_fan(topology, face, vertex)?;
     let n = fan.faces.len();
     let [next, previous] = if n == 6 {

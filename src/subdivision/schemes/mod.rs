@@ -85,7 +85,7 @@ pub(super) fn point(rules: &Rules, topology: &Topology, origin: Origin) -> Mask 
 
 /// Position and two tangents of the limit at `corner` of `face`, as masks over the vertices of the topology, or None where no mask is known.
 ///
-/// None where something semi-sharp at the vertex or a face that is no quad (no triangle) asks for refinement first. Beyond that, after any
+/// None where there is no such corner, and where something semi-sharp at the vertex or a face that is no quad (no triangle) asks for refinement first. Beyond that, after any
 /// number of refinements, where a scheme's limit has no mask: see [`LimitSurface`](crate::subdivision::LimitSurface).
 pub fn vertex_limit(
     topology: &Topology,
@@ -107,8 +107,9 @@ fn bilinear_limit(topology: &Topology, face: u32, corner: u32) -> Option<LimitSt
         2 => [along(3, 2), along(1, 2)],
         _ => [along(3, 2), along(0, 3)],
     };
+    let &vertex = vertices.get(corner as usize)?;
     Some(LimitStencil {
-        position: Mask::from_slice(&[(vertices[corner as usize], 1.0)]),
+        position: Mask::from_slice(&[(vertex, 1.0)]),
         du,
         dv,
     })

@@ -204,70 +204,42 @@ fn left(vertices: u32, instances: u32) -> (u32, u32) {
     }
 }
 
-#[allow(non_snake_case)]
-unsafe extern "system" fn vkCmdDraw(
-    cmd: vk::CommandBuffer,
-    vertices: u32,
-    instances: u32,
-    vertex: u32,
-    instance: u32,
-) {
-    let (vertices, instances) = left(vertices, instances);
-    // SAFETY: as above; a draw of nothing is allowed.
-    unsafe {
-        let next: vk::PFN_vkCmdDraw = below(cmd.as_raw(), c"vkCmdDraw");
-        next(cmd, vertices, instances, vertex, instance);
-    }
+/// Declares draws; `$left` tells what of their counts is left.
+macro_rules! draws {
+    ($($name:ident: $kind:ident($($argument:ident: $type:ty),*) $counts:pat = $left:expr;)*) => {
+        $(
+            #[allow(non_snake_case)]
+            unsafe extern "system" fn $name(cmd: vk::CommandBuffer $(, $argument: $type)*) {
+                let $counts = $left;
+                // SAFETY: as above; a draw of nothing is allowed.
+                unsafe {
+                    let next: vk::$kind = below(cmd.as_raw(), c_name!($name));
+                    next(cmd $(, $argument)*);
+                }
+            }
+        )*
+
+        fn draws(name: &str) -> Option<*const c_void> {
+            $(
+                if name == stringify!($name) {
+                    let own: vk::$kind = $name;
+                    return Some(own as *const c_void);
+                }
+            )*
+            None
+        }
+    };
 }
 
-#[allow(non_snake_case)]
-unsafe extern "system" fn vkCmdDrawIndexed(
-    cmd: vk::CommandBuffer,
-    indices: u32,
-    instances: u32,
-    index: u32,
-    vertex: i32,
-    instance: u32,
-) {
-    let (indices, instances) = left(indices, instances);
-    // SAFETY: as above.
-    unsafe {
-        let next: vk::PFN_vkCmdDrawIndexed = below(cmd.as_raw(), c"vkCmdDrawIndexed");
-        next(cmd, indices, instances, index, vertex, instance);
-    }
-}
-
-#[allow(non_snake_case)]
-unsafe extern "system" fn vkCmdDrawIndirect(
-    cmd: vk::CommandBuffer,
-    buffer: vk::Buffer,
-    offset: u64,
-    draws: u32,
-    stride: u32,
-) {
-    let (draws, _) = left(draws, 1);
-    // SAFETY: as above.
-    unsafe {
-        let next: vk::PFN_vkCmdDrawIndirect = below(cmd.as_raw(), c"vkCmdDrawIndirect");
-        next(cmd, buffer, offset, draws, stride);
-    }
-}
-
-#[allow(non_snake_case)]
-unsafe extern "system" fn vkCmdDrawIndexedIndirect(
-    cmd: vk::CommandBuffer,
-    buffer: vk::Buffer,
-    offset: u64,
-    draws: u32,
-    stride: u32,
-) {
-    let (draws, _) = left(draws, 1);
-    // SAFETY: as above.
-    unsafe {
-        let next: vk::PFN_vkCmdDrawIndexedIndirect =
-            below(cmd.as_raw(), c"vkCmdDrawIndexedIndirect");
-        next(cmd, buffer, offset, draws, stride);
-    }
+draws! {
+    vkCmdDraw: PFN_vkCmdDraw(vertices: u32, instances: u32, vertex: u32, instance: u32)
+        (vertices, instances) = left(vertices, instances);
+    vkCmdDrawIndexed: PFN_vkCmdDrawIndexed(indices: u32, instances: u32, index: u32, vertex: i32, instance: u32)
+        (indices, instances) = left(indices, instances);
+    vkCmdDrawIndirect: PFN_vkCmdDrawIndirect(buffer: vk::Buffer, offset: u64, draws: u32, stride: u32)
+        (draws, _) = left(draws, 1);
+    vkCmdDrawIndexedIndirect: PFN_vkCmdDrawIndexedIndirect(buffer: vk::Buffer, offset: u64, draws: u32, stride: u32)
+        (draws, _) = left(draws, 1);
 }
 
 /// What is asked for below an instance.
@@ -283,23 +255,19 @@ pub const OF_INSTANCES: [&str; 6] = [
 /// The layer's own function of this name.
 pub fn function(name: &str) -> Option<*const c_void> {
     let destroy_pipeline: vk::PFN_vkDestroyPipeline = vkDestroyPipeline;
-    let draw: vk::PFN_vkCmdDraw = vkCmdDraw;
-    let draw_indexed: vk::PFN_vkCmdDrawIndexed = vkCmdDrawIndexed;
-    let draw_indirect: vk::PFN_vkCmdDrawIndirect = vkCmdDrawIndirect;
-    let draw_indexed_indirect: vk::PFN_vkCmdDrawIndexedIndirect = vkCmdDrawIndexedIndirect;
     let create_device: vk::PFN_vkCreateDevice = chain::create_device;
     let destroy_device: vk::PFN_vkDestroyDevice = chain::destroy_device;
     let destroy_instance: vk::PFN_vkDestroyInstance = chain::destroy_instance;
     Some(match name {
         "vkDestroyPipeline" => destroy_pipeline as *const c_void,
-        "vkCmdDraw" => draw as *const c_void,
-        "vkCmdDrawIndexed" => draw_indexed as *const c_void,
-        "vkCmdDrawIndirect" => draw_indirect as *const c_void,
-        "vkCmdDrawIndexedIndirect" => draw_indexed_indirect as *const c_void,
         "vkCreateDevice" => create_device as *const c_void,
         "vkDestroyDevice" => destroy_device as *const c_void,
         "vkDestroyInstance" => destroy_instance as *const c_void,
-        _ => return objects(name).or_else(|| passed_on(name)),
+        _ => {
+            return objects(name)
+                .or_else(|| passed_on(name))
+                .or_else(|| draws(name));
+        }
     })
 }
 

@@ -134,6 +134,7 @@ fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Re
             method,
             options,
             by_default: false,
+            replaceable: false,
         };
         for &backend in &arguments.backend {
             let prepared = Drawing::prepare(&model, chosen).and_then(|prepared| {

@@ -96,6 +96,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         method,
         options,
         by_default: false,
+        replaceable: false,
     };
     let asked: Vec<Chosen> = asked.into_iter().map(chosen).collect();
     let reads = model::file(Some(&arguments.model));
@@ -181,7 +182,7 @@ fn sort_out(
     let (mut able, mut refusals) = (Vec::new(), Vec::new());
     for &chosen in asked {
         match progress::during("planning", |_| {
-            let prepared = chosen.prepare(model)?;
+            let (prepared, _) = chosen.prepare(model)?;
             cutting.backend.check(&prepared, cutting.cut.level)?;
             Ok::<_, Error>(prepared)
         }) {
@@ -214,7 +215,7 @@ fn reference(model: &Model, against: Option<Chosen>) -> Result<Reference> {
             Reference::Truth(limit, model.placement())
         }
         Some(chosen) => {
-            let prepared = chosen.prepare(model)?;
+            let (prepared, _) = chosen.prepare(model)?;
             Reference::Method(Box::new(Twin::new(model, prepared)))
         }
     })

@@ -165,18 +165,8 @@ fn resemble(_: &File, _: &Metadata) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::names;
     use std::fs;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).expect("the folder is there");
-        let name = |entry: io::Result<fs::DirEntry>| {
-            let entry = entry.expect("an entry");
-            entry.file_name().to_string_lossy().into_owned()
-        };
-        let mut names: Vec<String> = entries.map(name).collect();
-        names.sort();
-        names
-    }
 
     fn pending(path: &Path) -> Pending {
         let made = create(&[], &[("--output", path)]).expect("writable");

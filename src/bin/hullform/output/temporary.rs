@@ -184,16 +184,8 @@ mod linux {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::names;
     use std::io::Write;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).expect("the folder is there");
-        let name = |entry: io::Result<fs::DirEntry>| {
-            let entry = entry.expect("an entry");
-            entry.file_name().to_string_lossy().into_owned()
-        };
-        entries.map(name).collect()
-    }
 
     /// Each kind, whatever the file system of the test has.
     fn kinds(folder: &Path) -> Vec<Temporary> {

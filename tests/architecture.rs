@@ -218,7 +218,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 32] = [
+const NAMED: [(&str, &str, &str); 29] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -241,16 +241,13 @@ const NAMED: [(&str, &str, &str); 32] = [
     ("tests/cli_outputs.rs", "bft", WORDS),
     ("tests/cli_outputs.rs", "qas", WORDS),
     ("tests/cli_outputs.rs", "flat", WORDS),
-    ("tests/drivers/failures.rs", "flat", WORDS),
-    ("tests/drivers/failures.rs", "pn", WORDS),
-    ("tests/drivers/losses.rs", "flat", WORDS),
-    ("tests/drivers/losses.rs", "pn", WORDS),
     ("tests/pictures.rs", "quadtree", WORDS),
     ("tests/pictures.rs", "flat", WORDS),
     ("tests/pictures.rs", "pn", WORDS),
     ("tests/cli_bench.rs", "quadtree", WORDS),
     ("tests/cli_bench.rs", "flat", WORDS),
-    ("tests/planar.rs", "quadtree", PLANS),
+    ("tests/corners.rs", "quadtree", PLANS),
+    ("tests/interruption.rs", "flat", WORDS),
 ];
 
 const PLANS: &str = "it is about plans, which one method has";

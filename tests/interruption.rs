@@ -43,7 +43,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 /// Each subcommand that writes, and the names of what it writes.
-const WRITERS: [(&[&str], &[&str]); 4] = [
+const WRITERS: [(&[&str], &[&str]); 5] = [
     (
         &[
             "render", "-o", "a.png", "--stats", "a.json", "--size", "800x800",
@@ -57,6 +57,21 @@ const WRITERS: [(&[&str], &[&str]); 4] = [
     (
         &["compare", "builtin:cube", "--size", "64x64", "-o", "c.png"],
         &["c.png"],
+    ),
+    (
+        &[
+            "bench",
+            "builtin:hull",
+            "--methods",
+            "flat",
+            "--csv",
+            "e.csv",
+            "--json",
+            "e.json",
+            "--plot",
+            "e.svg",
+        ],
+        &["e.csv", "e.json", "e.svg"],
     ),
     (
         &[

@@ -35,7 +35,7 @@ const EVERY: &str = "HULLFORM_EVERY_FAILURE";
 const LONG: [&str; 2] = ["verify caches", "edges"];
 
 /// Every way that the program and the examples have to Vulkan, with little to draw.
-const PROGRAMS: [Program; 10] = [
+const PROGRAMS: [Program; 11] = [
     program("devices", "devices --device 0"),
     program(
         "render",
@@ -56,6 +56,10 @@ const PROGRAMS: [Program; 10] = [
     program(
         "compare",
         "compare builtin:cube --size 32x24 --level 4 --methods flat,phong --costs 1 -o OUT/a.png",
+    ),
+    program(
+        "bench",
+        "bench builtin:cube --levels 2 --methods phong --frames 1 --json OUT/a.json --csv OUT/a.csv --plot OUT/a.svg",
     ),
     program(
         "verify",

@@ -5,7 +5,7 @@ use failing_driver::{Fault, Lost};
 use crate::common::cli::has_device;
 use crate::trial::{Bench, Program, example, is_there, program};
 
-const PROGRAMS: [Program; 10] = [
+const PROGRAMS: [Program; 12] = [
     program(
         "tessellate",
         "tessellate builtin:cube --level 4 -o OUT/a.obj",
@@ -41,6 +41,14 @@ const PROGRAMS: [Program; 10] = [
     program(
         "compare by patterns",
         "compare builtin:cube --size 32x24 --level 4 --methods flat --backend pattern --costs 2 -o OUT/a.png",
+    ),
+    program(
+        "bench",
+        "bench builtin:cube --levels 2 --methods pn --frames 1 --csv OUT/a.csv",
+    ),
+    program(
+        "bench by patterns",
+        "bench builtin:cube --levels 2 --methods pn --backend pattern --frames 1 --csv OUT/a.csv",
     ),
     example("headless_png", ""),
 ];

@@ -13,7 +13,7 @@ use crate::method::{
     to_ptex,
 };
 use crate::plan::{Plans, walk};
-use crate::subdivision::{LimitSurface, is_cusp, vertex_limit};
+use crate::subdivision::{LimitSurface, is_cusp, is_unpromised, vertex_limit};
 
 /// What a vertex is evaluated by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,6 +153,27 @@ fn has_sure_normal(finer: &LimitSurface, scheme: Scheme, face: u32, uv: [f32; 2]
     !is_cusp(topology, child, corner) && vertex_limit(topology, scheme, child, corner).is_some()
 }
 
+/// Whether a scheme promises a tangent plane at (u, v) of a ptex face: tables have the limit's own tangents, and where none is promised the truth asks
+/// their surroundings.
+fn has_promised_normal(truth: &LimitSurface, ptex: u32, uv: [f32; 2]) -> bool {
+    let Some((face, part)) = truth.face_corner(ptex as usize) else {
+        return false;
+    };
+    let topology = truth.topology();
+    let at = |corner: u32| !is_unpromised(topology, truth.scheme(), face, corner);
+    match (topology.face(face).len(), uv) {
+        (3, [0.0, 0.0]) if truth.scheme().is_whole(3) => at(0),
+        (3, [1.0, 0.0]) if truth.scheme().is_whole(3) => at(1),
+        (3, [0.0, 1.0]) if truth.scheme().is_whole(3) => at(2),
+        (4, [0.0, 0.0]) => at(0),
+        (4, [1.0, 0.0]) => at(1),
+        (4, [1.0, 1.0]) => at(2),
+        (4, [0.0, 1.0]) => at(3),
+        (3 | 4, _) => true,
+        (_, at_vertex) => at_vertex != [0.0, 0.0] || at(part),
+    }
+}
+
 /// What captured vertices are measured with.
 pub(super) struct Ruler<'a> {
     model: &'a Model,
@@ -199,7 +220,12 @@ impl<'a> Ruler<'a> {
                 }
             }
             Right::LatticeNormals(truth, controls) => match pass.is_on_lattice(vertex.uv) {
-                true => self.of_truth(truth, ptex, uv),
+                true if has_promised_normal(truth, ptex, uv) => self.of_truth(truth, ptex, uv),
+                true => {
+                    let twin = self.of_twin(controls, pass, vertex);
+                    let right = self.of_truth(truth, ptex, uv);
+                    right.map(|(position, _)| (position, twin.1))
+                }
                 false => Some(self.of_twin(controls, pass, vertex)),
             },
             Right::Hexagon([truth, finer], controls) => {

@@ -96,6 +96,7 @@ impl Hexagons {
             numbers.insert((place.vertex, place.face), number);
         }
         let rows = Rows {
+            topology,
             refined: &refined,
             scheme,
             masks: &masks,
@@ -142,6 +143,7 @@ fn sector(topology: &Topology, face: u32, corner: u32) -> Vec<u32> {
 
 /// What the rows are made of.
 struct Rows<'a> {
+    topology: &'a Topology,
     refined: &'a Topology,
     scheme: Scheme,
     /// Of each vertex of the refined mesh, over the control vertices.
@@ -163,7 +165,10 @@ impl Rows<'_> {
         };
         let limits: Vec<LimitStencil> = places
             .par_iter()
-            .map(|place| self.limit(place.face, place.vertex))
+            .map(|place| match place.kind {
+                Kind::Checked(_) => self.checked_limit(place),
+                _ => self.limit(place.face, place.vertex),
+            })
             .collect();
         let mut positions: FxHashMap<u32, Mask> = FxHashMap::default();
         points.begin(abi::POINTS_LIMIT, 0);
@@ -232,6 +237,16 @@ impl Rows<'_> {
             du: over_controls(&limit.du),
             dv: over_controls(&limit.dv),
         }
+    }
+
+    /// Likewise, with the tangents of the control mesh itself: whether they are firm depends on their lengths, which each refinement changes, and truth and
+    /// method shall agree. Only faces around control vertices are alone, or without a promised plane; each is the child at that corner of its own.
+    fn checked_limit(&self, place: &Place) -> LimitStencil {
+        let (face, corner) = (place.face / 4, place.face % 4);
+        let limit = deep_limit(self.topology, self.scheme, face, corner);
+        let LimitStencil { du, dv, .. } = limit.expect("triangles have children at their corners");
+        let LimitStencil { position, .. } = self.limit(place.face, place.vertex);
+        LimitStencil { position, du, dv }
     }
 
     fn nearby(&self, face: u32, vertex: u32) -> [Mask; 2] {

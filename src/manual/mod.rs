@@ -13,7 +13,7 @@
 //! - [Edges and corners](edges_and_corners): why there are no cracks
 //! - [Devices](devices): what a device needs, and driver faults
 //! - [Compare](compare): methods side by side
-//! - [Bench](bench): what a frame costs
+//! - [Benchmarks](benchmarks): what a frame costs
 //! - [Verify](verify): the conformance suite
 //! - [Command line](command_line): the program
 //! - [Library](library): the crate, for engines
@@ -45,7 +45,7 @@ chapters! {
     edges_and_corners
     devices
     compare
-    bench
+    benchmarks
     verify
     command_line
     library

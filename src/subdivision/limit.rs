@@ -157,7 +157,7 @@ pub fn is_unpromised(topology: &Topology, scheme: Scheme, face: u32, corner: u32
     }
 }
 
-/// Whether the limit has a cusp at `corner` of `face`: each face of the [`fan`](Topology::fan) has a tangent plane of its own. A semi-sharp feature
+/// Whether the limit has a cusp at `corner` of `face`: each face of the [`fan_at`](Topology::fan_at) has a tangent plane of its own. A semi-sharp feature
 /// has no say: it is gone in the limit. There is none where there is no such corner.
 pub fn is_cusp(topology: &Topology, face: u32, corner: u32) -> bool {
     let Some(&vertex) = topology.face(face).get(corner as usize) else {

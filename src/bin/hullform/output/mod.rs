@@ -90,6 +90,19 @@ impl Format {
     }
 }
 
+/// What is in a folder, for tests.
+#[cfg(test)]
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    let name = |entry: std::io::Result<std::fs::DirEntry>| {
+        let entry = entry.expect("an entry");
+        entry.file_name().to_string_lossy().into_owned()
+    };
+    let mut names: Vec<String> = entries.map(name).collect();
+    names.sort();
+    names
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
@@ -124,17 +137,4 @@ pub(crate) mod tests {
             assert!(error.to_string().ends_with("ends in .csv, .obj"));
         }
     }
-}
-
-/// What is in a folder, for tests.
-#[cfg(test)]
-fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).expect("the folder is there");
-    let name = |entry: std::io::Result<std::fs::DirEntry>| {
-        let entry = entry.expect("an entry");
-        entry.file_name().to_string_lossy().into_owned()
-    };
-    let mut names: Vec<String> = entries.map(name).collect();
-    names.sort();
-    names
 }

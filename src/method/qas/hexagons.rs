@@ -10,7 +10,7 @@ use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
 use crate::subdivision::{
     Blend, LimitStencil, Mask, Refinement, closing_tangents, deep_limit, is_cusp, is_unpromised,
-    refine_all, tangents_nearby,
+    refine_all, tangents_nearby, vertex_limit,
 };
 
 /// The points of all hexagons. One a vertex of the refined mesh, more where infinite creases part its faces into sectors. At a cusp, where each
@@ -239,14 +239,16 @@ impl Rows<'_> {
         }
     }
 
-    /// Likewise, with the tangents of the control mesh itself: whether they are firm depends on their lengths, which each refinement changes, and truth and
-    /// method shall agree. Only faces around control vertices are alone, or without a promised plane; each is the child at that corner of its own.
+    /// Likewise, with the tangents of the control mesh itself, where a mask has them: whether they are firm depends on their lengths, which each refinement
+    /// changes, and truth and method shall agree. Only faces around control vertices are alone, or without a promised plane; each is the child at that
+    /// corner of its own.
     fn checked_limit(&self, place: &Place) -> LimitStencil {
         let (face, corner) = (place.face / 4, place.face % 4);
-        let limit = deep_limit(self.topology, self.scheme, face, corner);
-        let LimitStencil { du, dv, .. } = limit.expect("triangles have children at their corners");
-        let LimitStencil { position, .. } = self.limit(place.face, place.vertex);
-        LimitStencil { position, du, dv }
+        let limit = self.limit(place.face, place.vertex);
+        match vertex_limit(self.topology, self.scheme, face, corner) {
+            Some(LimitStencil { du, dv, .. }) => LimitStencil { du, dv, ..limit },
+            None => limit,
+        }
     }
 
     fn nearby(&self, face: u32, vertex: u32) -> [Mask; 2] {

@@ -42,6 +42,8 @@ const uint POINTS_NORMALS = 3u;
 const uint POINTS_SPARE = 4u;
 // Kind of a step: normals from those nearby, where a point's own is none, or another.
 const uint POINTS_NEARBY = 5u;
+// Kind of a step: normals from those nearby, unless these cancel.
+const uint POINTS_CUSP = 6u;
 // Row flag: the ring of faces is open, its first and last vertex belong to one face each.
 const uint ROW_OPEN = 2147483648u;
 // Row flag: tangents that are nearly parallel give no normal.

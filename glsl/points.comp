@@ -67,20 +67,24 @@ void spare(PointRow row, uint number) {
     if (points[number].normal == vec3(0.0)) points[number].normal = tangent_normal(row);
 }
 
-// The weighted mean of other points' normals.
+// The square of what a sum of unit normals has to be at least.
+const float CANCELLED = 0.00390625;
+
+// The weighted mean of other points' normals; zero where they cancel, as opposite ones do: what is left is then rounding.
 vec3 mean_normal(PointRow row) {
     precise vec3 normal = vec3(0.0);
     for (uint i = 0u; i < row.count; ++i) {
         PointTerm term = terms[row.first + i];
         normal = normal + term.position * points[term.source].normal;
     }
-    return unit(normal);
+    return exact_dot(normal, normal) > CANCELLED ? unit(normal) : vec3(0.0);
 }
 
-// Where the normal is none, or far from that nearby.
+// At a cusp, and where the normal is none, or far from that nearby.
 void nearby(PointRow row, uint number) {
     vec3 beside = mean_normal(row);
-    if (!are_near(points[number].normal, beside) && beside != vec3(0.0)) points[number].normal = beside;
+    bool counts = point_step.kind == POINTS_NEARBY && are_near(points[number].normal, beside);
+    if (!counts && beside != vec3(0.0)) points[number].normal = beside;
 }
 
 // The areas of the triangles between the spokes. Of an open ring there is none between the last and the first. Each spoke errs by the rounding of both
@@ -118,6 +122,7 @@ void main() {
     case POINTS_RING: ring(row, number); return;
     case POINTS_SPARE: spare(row, number); return;
     case POINTS_NEARBY: nearby(row, number); return;
+    case POINTS_CUSP: nearby(row, number); return;
     default: points[number].normal = mean_normal(row);
     }
 }

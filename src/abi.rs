@@ -151,6 +151,8 @@ constants! {
     POINTS_SPARE = 4;
     /// Kind of a step: normals from those nearby, where a point's own is none, or another.
     POINTS_NEARBY = 5;
+    /// Kind of a step: normals from those nearby, unless these cancel.
+    POINTS_CUSP = 6;
     /// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
     ROW_OPEN = 0x8000_0000;
     /// Row flag: tangents that are nearly parallel give no normal.

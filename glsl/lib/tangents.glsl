@@ -33,20 +33,20 @@ bool span_plane(Tangents tangents) {
     return errors.x < 2.0 && errors.y < 2.0 && reach(exact_cross(a, b)) > bound;
 }
 
-// Where the limit's tangents count only if the surroundings have a normal like theirs: how much they span at least beside the longer one's square, and
+// Where the limit's tangents count only if the surroundings have a normal like theirs: how much they span at least beside the sum of their squares, and
 // how far their normal may be from that nearby; squared.
-const float FIRM = 0.00390625;
+const float FIRM = 0.0009765625;
 const float NEAR_SQUARE = 0.0076;
 
-// Whether they span enough beside the longer one's square: not if they are nearly parallel, nor if one is far longer than the other.
+// Whether they span enough beside their squares: not if they are nearly parallel, nor if one is far longer than the other.
 bool are_firm(Tangents tangents) {
     float grown = factor(reach(tangents.du) > reach(tangents.dv) ? tangents.du : tangents.dv);
     precise vec3 a = grown * tangents.du;
     precise vec3 b = grown * tangents.dv;
     vec3 area = exact_cross(a, b);
-    float longest = max(exact_dot(a, a), exact_dot(b, b));
-    precise float least = FIRM * (longest * longest);
-    return longest > 0.0 && exact_dot(area, area) >= least;
+    precise float squares = exact_dot(a, a) + exact_dot(b, b);
+    precise float least = FIRM * (squares * squares);
+    return squares > 0.0 && exact_dot(area, area) >= least;
 }
 
 // Whether a normal and that nearby are so much alike that the former counts.

@@ -46,7 +46,9 @@ pub enum TableNormals {
     /// Subdivision shading (Alexa, Boubekeur 2008) from this level on, 0..=2: vertex normals of the mesh refined so often, blended by the same
     /// weights as positions. The earlier it begins the smoother it looks.
     Shading(u32),
-    /// The limit's own, from tables of tangents, which take two times the memory of those of positions besides.
+    /// The limit's own, from tables of tangents, which take two times the memory of those of positions besides. Where a scheme promises no tangent plane,
+    /// as the butterfly at some boundary vertices, it may be up to 5 degrees from [`LimitSurface`](crate::subdivision::LimitSurface)'s, which asks the
+    /// surroundings.
     Geometric,
 }
 

@@ -142,10 +142,11 @@ impl Points {
             }
             abi::POINTS_SPARE if before.normal != [0.0; 3] => before.normal.into(),
             abi::POINTS_SPARE => tangent_normal(terms, vertices, false),
-            abi::POINTS_NEARBY => {
+            abi::POINTS_NEARBY | abi::POINTS_CUSP => {
                 let nearby = mean_normal(terms, points);
                 let own = Vec3::from(before.normal);
-                if nearby == Vec3::ZERO || Tangents::are_near(own, nearby) {
+                let counts = kind == abi::POINTS_NEARBY && Tangents::are_near(own, nearby);
+                if nearby == Vec3::ZERO || counts {
                     own
                 } else {
                     nearby
@@ -189,12 +190,20 @@ fn tangent_normal(terms: &[PointTerm], vertices: &[Vec3], firm: bool) -> Vec3 {
     tangents.normal()
 }
 
-/// The weighted mean of other points' normals.
+/// The weighted mean of other points' normals; zero where they cancel, as opposite ones do: what is left is then rounding.
 fn mean_normal(terms: &[PointTerm], points: &[Point]) -> Vec3 {
-    unit(terms.iter().fold(Vec3::ZERO, |sum, term| {
+    let sum = terms.iter().fold(Vec3::ZERO, |sum, term| {
         sum + term.position * Vec3::from(points[term.source as usize].normal)
-    }))
+    });
+    if sum.dot(sum) > CANCELLED {
+        unit(sum)
+    } else {
+        Vec3::ZERO
+    }
 }
+
+/// The square of what a sum of unit normals has to be at least; as in `subdivision/normals.rs`.
+const CANCELLED: f32 = 1.0 / 256.0;
 
 /// The power of two that brings the greatest of some positions to about unit size; 0 where there is none.
 fn common_factor(positions: impl Iterator<Item = Vec3>) -> f32 {

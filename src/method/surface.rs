@@ -69,9 +69,9 @@ pub(super) const UNIT: f32 = 0.5 * f32::EPSILON;
 /// How many times its own error a sum has to be to count as a direction. The bounds are never reached, as not all errors add up.
 pub(super) const CLEAR: f32 = 4.0;
 
-/// Where the limit's tangents count only if the surroundings have a normal like theirs: how much they span at least beside the longer one's square, and
-/// how far their normal may be from that nearby; squared. As in `subdivision/normals.rs`.
-const FIRM: f32 = 1.0 / 256.0;
+/// Where the limit's tangents count only if the surroundings have a normal like theirs: how much they span at least beside the sum of their squares, and
+/// how far their normal may be from that nearby; squared. As in `subdivision/normals.rs`, of half the sum.
+const FIRM: f32 = 1.0 / 1024.0;
 const NEAR: f32 = 0.0076;
 
 /// The greatest element.
@@ -99,14 +99,14 @@ impl Tangents {
         errors[0] < 2.0 && errors[1] < 2.0 && reach(a.cross(b)) > bound
     }
 
-    /// Whether they span enough beside the longer one's square: not if they are nearly parallel, nor if one is far longer than the other.
+    /// Whether they span enough beside their squares: not if they are nearly parallel, nor if one is far longer than the other.
     pub fn are_firm(&self) -> bool {
         let [du, dv] = self.sums;
         let grown = factor(if reach(du) > reach(dv) { du } else { dv });
         let (a, b) = (grown * du, grown * dv);
-        let longest = a.dot(a).max(b.dot(b));
+        let squares = a.dot(a) + b.dot(b);
         let area = a.cross(b);
-        longest > 0.0 && area.dot(area) >= FIRM * (longest * longest)
+        squares > 0.0 && area.dot(area) >= FIRM * (squares * squares)
     }
 
     /// Whether a normal and that nearby are so much alike that the former counts.

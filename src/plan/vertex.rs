@@ -5,7 +5,9 @@ use crate::plan::builder::{Plan, PlanOptions, Stencil};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
 use crate::plan::rows::Rows;
-use crate::subdivision::{Mask, TangentPlane, closing_tangents, limit_stencil, tangent_plane};
+use crate::subdivision::{
+    LimitStencil, Mask, TangentPlane, closing_tangents, limit_stencil, orthonormal, tangent_plane,
+};
 
 /// Which vertex of a configuration is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -70,7 +72,6 @@ impl VertexPlan {
                 .collect(),
             VertexKind::Centre => vec![None],
         };
-        let mut scale = 1.0;
         loop {
             let limits = corners
                 .iter()
@@ -93,8 +94,7 @@ impl VertexPlan {
                         spare: spare.is_some(),
                     };
                     if !cusp {
-                        rows.push(&limit.du, &level.rows);
-                        rows.push(&limit.dv, &level.rows);
+                        push_tangents(&mut rows, &limit, &level.rows);
                     }
                     for mask in spare.iter().flatten() {
                         rows.push(mask, &whole.rows);
@@ -103,15 +103,25 @@ impl VertexPlan {
                     sides.push(side);
                 }
                 return Ok(VertexPlan {
-                    plan: plan(&rows, scale, options),
+                    plan: plan(&rows, options),
                     sides,
                     planes: planes.len(),
                 });
             }
             let (next, corner) = refined(&level, &corners);
             (level, corners) = (next, corner);
-            scale *= 2.0;
         }
+    }
+}
+
+/// Appends the limit's tangents, of which only the plane counts.
+fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Rows) {
+    let first = rows.len();
+    rows.push(&limit.du, level);
+    rows.push(&limit.dv, level);
+    let tangents = orthonormal(rows.row(first), rows.row(first + 1));
+    for (row, weights) in (first..).zip(&tangents) {
+        rows.row_mut(row).copy_from_slice(weights);
     }
 }
 
@@ -126,18 +136,11 @@ fn refined(level: &Level, corners: &[(u32, u32)]) -> (Level, Vec<(u32, u32)>) {
     (level.refined(corners), next)
 }
 
-/// The stencils; a child's parameters run twice as fast as its parent's.
-fn plan(rows: &Rows, scale: f64, options: PlanOptions) -> Plan {
-    let stencil = |number: usize| {
-        let scale = if number == 0 { 1.0 } else { scale };
-        Stencil {
-            weights: rows
-                .row(number)
-                .iter()
-                .map(|weight| scale * weight)
-                .collect(),
-            level: 0,
-        }
+/// The stencils.
+fn plan(rows: &Rows, options: PlanOptions) -> Plan {
+    let stencil = |number: usize| Stencil {
+        weights: rows.row(number).to_vec(),
+        level: 0,
     };
     Plan {
         ring_size: rows.width(),

@@ -47,19 +47,43 @@ pub(crate) fn tangents_nearby(
     orthonormal(&du, &dv).map(|row| outside(&row, &vertices))
 }
 
+/// Less than this sine between two rows of weights is what refining twenty times leaves of rounding.
+const PARALLEL: f64 = 1.0 / (1u64 << 20) as f64;
+
 /// Two rows of weights that span the plane of two others and have its orientation, of length 1 and orthogonal (Gram, Schmidt): beside a cusp both
-/// derivatives nearly have its direction, and their difference would drown in the rounding of an f32.
+/// derivatives nearly have its direction, and their difference would drown in the rounding of an f32. Rows that are parallel but for rounding span
+/// none: the second is zero.
+///
+/// All pairs for the same plane differ by a rotation: how much the tangents span beside the sum of their squares does not depend on the pair that
+/// was known, nor on how often the mesh had been refined for it.
 pub(crate) fn orthonormal(du: &[f64], dv: &[f64]) -> [Vec<f64>; 2] {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let unit = |row: Vec<f64>| -> Vec<f64> {
-        let length = dot(&row, &row).sqrt();
-        row.iter().map(|weight| weight / length).collect()
+    let unit = |row: &[f64], least: f64| -> Vec<f64> {
+        let length = dot(row, row).sqrt();
+        let factor = if length > least { 1.0 / length } else { 0.0 };
+        row.iter().map(|weight| factor * weight).collect()
     };
-    let du = unit(du.to_vec());
-    let share = dot(&du, dv);
-    let rest = dv.iter().zip(&du).map(|(b, a)| b - share * a).collect();
-    let dv = unit(rest);
+    let [du, dv] = [du, dv].map(|row| unit(row, 0.0));
+    let share = dot(&du, &dv);
+    let rest: Vec<f64> = dv.iter().zip(&du).map(|(b, a)| b - share * a).collect();
+    let dv = unit(&rest, PARALLEL);
     [du, dv]
+}
+
+/// The same for masks.
+pub(crate) fn orthonormal_masks(du: &Mask, dv: &Mask) -> [Mask; 2] {
+    let mut vertices: Vec<u32> = du.iter().chain(dv).map(|&(vertex, _)| vertex).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let row = |mask: &Mask| {
+        let mut row = vec![0.0; vertices.len()];
+        for &(vertex, weight) in mask {
+            let place = vertices.binary_search(&vertex);
+            row[place.expect("all are there")] += weight;
+        }
+        row
+    };
+    orthonormal(&row(du), &row(dv)).map(|row| outside(&row, &vertices))
 }
 
 /// A face in its surroundings at some level.

@@ -126,12 +126,13 @@ impl Jet {
         (normal.length() > CLEAR * error).then(|| normal.normalize())
     }
 
-    /// How much the derivatives span beside the square of the longer one.
+    /// How much the derivatives span beside the mean of their squares: the sine between them where they have one length, less elsewhere.
     pub fn spread(&self) -> f64 {
         let (du, dv) = (self.du.value, self.dv.value);
         let longer = du.length().max(dv.length());
         if longer > 0.0 {
-            (du / longer).cross(dv / longer).length()
+            let (a, b) = (du / longer, dv / longer);
+            2.0 * a.cross(b).length() / (a.length_squared() + b.length_squared())
         } else {
             0.0
         }

@@ -18,7 +18,7 @@ pub use crate::mesh::Scheme;
 pub(crate) use box_patch::box_spline_patch;
 pub(crate) use curve::{EdgeCurve, edge_curve};
 pub use deep::deep_limit;
-pub(crate) use deep::{orthonormal, tangents_nearby};
+pub(crate) use deep::{orthonormal, orthonormal_masks, tangents_nearby};
 pub use limit::{LimitStencil, is_cusp, limit_stencil};
 pub(crate) use limit::{TangentPlane, closing_tangents, is_unpromised, tangent_plane};
 pub use limit_surface::{LimitSample, LimitSurface};

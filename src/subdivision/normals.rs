@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::mesh::Scheme;
 use crate::mesh::topology::Fan;
 use crate::subdivision::Mask;
+use crate::subdivision::deep::{deep_limit, orthonormal_masks};
 use crate::subdivision::jet::{CLEAR, Jet, Sum};
 use crate::subdivision::limit::{TangentPlane, closing_tangents, is_unpromised, tangent_plane};
 use crate::subdivision::limit_surface::{LimitSurface, nearest_corner};
@@ -12,11 +13,15 @@ use crate::subdivision::limit_surface::{LimitSurface, nearest_corner};
 /// How far from a corner its surroundings are asked, in ptex coordinates: as near as tess level 64 ever comes, the greatest that Vulkan asks for.
 const NEARBY: f64 = 1.0 / 64.0;
 
-/// At the corner of a single face both sharp edges span the limit's plane. It is taken if their product is at least this beside the longer one's square,
-/// as far as edges of one length are when 3.6 degrees from straight, and if the square of its normal's distance from that nearby is below this: 4 sin^2 (5 / 2 degrees) and a little less. What turns faster is
-/// seen as a dark spot (`FASTER` in `conformance/witness/corners.rs`).
+/// The limit's own plane is taken if two tangents of orthonormal rows of weights ([`orthonormal_masks`]) span at least this beside the mean of their squares,
+/// as much as tangents of one length do that are 3.6 degrees from parallel, so that rounding does not turn it; and if
+/// the square of its normal's distance from that nearby is below this: 4 sin^2 (5 / 2 degrees) and a little less. What turns faster is seen as a dark spot
+/// (`FASTER` in `conformance/witness/corners.rs`).
 const FIRM: f64 = 1.0 / 16.0;
 const NEAR: f64 = 0.0076;
+
+/// Shorter sums of unit normals have cancelled, and are rounding.
+const CANCELLED: f64 = 1.0 / 16.0;
 
 impl LimitSurface {
     /// The normal at (u, v) of the ptex face of a corner, whose derivatives there are known.
@@ -39,10 +44,10 @@ impl LimitSurface {
         let cusp = matches!(tangent_plane(topology, face, corner), TangentPlane::Face(_));
         let own = || self.nearby(face, corner);
         let found = match &fan.faces[..] {
-            [_] => of_checked(jet, own()),
+            [_] => self.checked(&fan, jet, own()),
             _ if cusp => own().or_else(|| jet.normal()),
             _ if is_unpromised(topology, self.scheme(), face, corner) => {
-                of_checked(jet, self.around(&fan))
+                self.checked(&fan, jet, self.around(&fan))
             }
             _ => jet
                 .normal()
@@ -58,6 +63,11 @@ impl LimitSurface {
         let topology = self.topology();
         let [a, b] = closing_tangents(topology, face, corner)?;
         let centre = self.positions[topology.face(face)[corner as usize] as usize];
+        self.about(centre, &a, &b).normal()
+    }
+
+    /// Tangents over positions about a point, each of which errs by its own rounding.
+    fn about(&self, centre: DVec3, du: &Mask, dv: &Mask) -> Jet {
         let of = |mask: &Mask| {
             let ends = mask
                 .iter()
@@ -67,10 +77,40 @@ impl LimitSurface {
         };
         let jet = Jet {
             position: centre,
-            du: of(&a),
-            dv: of(&b),
+            du: of(du),
+            dv: of(dv),
         };
-        jet.blurred(8.0 * self.grain).normal()
+        jet.blurred(8.0 * self.grain)
+    }
+
+    /// Where a single face lies between two sharp edges, and where no tangent plane is promised: the limit's own normal, if its tangents are firm and the
+    /// surroundings have one like it. Derivatives that are nearly parallel are left for masks, which are not: their rows are orthonormal.
+    fn checked(&self, fan: &Fan, jet: &Jet, nearby: Option<DVec3>) -> Option<DVec3> {
+        let masks = self.limit_tangents(fan);
+        let limit = match jet.spread() >= FIRM {
+            true => jet.normal(),
+            false => masks.normal(),
+        };
+        let firm = limit.filter(|_| masks.spread() >= FIRM);
+        match (firm, nearby) {
+            (Some(limit), Some(nearby)) if limit.distance_squared(nearby) < NEAR => Some(limit),
+            (_, Some(nearby)) => Some(nearby),
+            (_, None) => limit,
+        }
+    }
+
+    /// The limit's tangents: how much they span does not depend on the pair of them that is at hand, nor on who asks. Where none are promised each face's
+    /// may be as many refinements from parallel as were made, hence the lowest's for all.
+    fn limit_tangents(&self, fan: &Fan) -> Jet {
+        let topology = self.topology();
+        let lowest = fan.faces.iter().min();
+        let face = *lowest.expect("a fan has faces");
+        let corner = self.corner_of(face, fan.vertex);
+        let limit = deep_limit(topology, self.scheme(), face, corner);
+        let limit = limit.expect("the face has this corner");
+        let [du, dv] = orthonormal_masks(&limit.du, &limit.dv);
+        let centre = self.positions[topology.face(face)[corner as usize] as usize];
+        self.about(centre, &du, &dv)
     }
 
     /// The mean of the normals nearby on all faces of a fan.
@@ -79,9 +119,8 @@ impl LimitSurface {
             let corner = self.corner_of(face, fan.vertex);
             self.nearby(face, corner)
         });
-        // Unit vectors: below this they cancel.
         let sum: DVec3 = nearby.sum();
-        (sum.length() > FIRM).then(|| sum.normalize())
+        (sum.length() > CANCELLED).then(|| sum.normalize())
     }
 
     /// Of the derivatives next to a corner.
@@ -147,17 +186,5 @@ impl LimitSurface {
         let mut vertices = self.topology().face(face).iter();
         let corner = vertices.position(|&v| v == vertex);
         corner.expect("the faces of a fan have its vertex") as u32
-    }
-}
-
-/// Where a single face lies between two sharp edges, and where no tangent plane is promised: the limit's own normal, if its tangents are firm and the
-/// surroundings have one like it.
-fn of_checked(jet: &Jet, nearby: Option<DVec3>) -> Option<DVec3> {
-    let limit = jet.normal();
-    let firm = limit.filter(|_| jet.spread() >= FIRM);
-    match (firm, nearby) {
-        (Some(limit), Some(nearby)) if limit.distance_squared(nearby) < NEAR => Some(limit),
-        (_, Some(nearby)) => Some(nearby),
-        (_, None) => limit,
     }
 }

@@ -10,7 +10,7 @@ use crate::mesh::{Model, Scheme};
 use crate::method::points::{Points, Row};
 use crate::subdivision::{
     Blend, LimitStencil, Mask, Refinement, closing_tangents, deep_limit, is_cusp, is_unpromised,
-    refine_all, tangents_nearby, vertex_limit,
+    orthonormal_masks, refine_all, tangents_nearby,
 };
 
 /// The points of all hexagons. One a vertex of the refined mesh, more where infinite creases part its faces into sectors. At a cusp, where each
@@ -204,7 +204,7 @@ impl Rows<'_> {
         }
         for (kind, first, places) in [
             (abi::POINTS_NEARBY, first_checked, checked),
-            (abi::POINTS_NORMALS, first_cusp, cusps),
+            (abi::POINTS_CUSP, first_cusp, cusps),
         ] {
             points.begin(kind, first);
             for place in places {
@@ -227,27 +227,31 @@ impl Rows<'_> {
         corner.expect("the face has this vertex") as u32
     }
 
-    /// The limit at a vertex of the refined mesh, seen from a face, over the control vertices.
+    /// The limit at a vertex of the refined mesh, seen from a face, over the control vertices. Of the tangents only the plane counts.
     fn limit(&self, face: u32, vertex: u32) -> LimitStencil {
         let limit = deep_limit(self.refined, self.scheme, face, self.corner(face, vertex));
         let limit = limit.expect("the face has this vertex");
         let over_controls = |mask: &Mask| Mask::blend(mask, self.masks);
+        let [du, dv] = orthonormal_masks(&over_controls(&limit.du), &over_controls(&limit.dv));
         LimitStencil {
             position: over_controls(&limit.position),
-            du: over_controls(&limit.du),
-            dv: over_controls(&limit.dv),
+            du,
+            dv,
         }
     }
 
-    /// Likewise, with the tangents of the control mesh itself, where a mask has them: whether they are firm depends on their lengths, which each refinement
-    /// changes, and truth and method shall agree. Only faces around control vertices are alone, or without a promised plane; each is the child at that
+    /// Likewise, with the tangents of the control mesh itself: where none are promised each refinement may bring them nearer to parallel, and truth and
+    /// method shall agree on whether they are firm. Only faces around control vertices are alone, or without a promised plane; each is the child at that
     /// corner of its own.
     fn checked_limit(&self, place: &Place) -> LimitStencil {
         let (face, corner) = (place.face / 4, place.face % 4);
-        let limit = self.limit(place.face, place.vertex);
-        match vertex_limit(self.topology, self.scheme, face, corner) {
-            Some(LimitStencil { du, dv, .. }) => LimitStencil { du, dv, ..limit },
-            None => limit,
+        let limit = deep_limit(self.topology, self.scheme, face, corner);
+        let LimitStencil { du, dv, .. } = limit.expect("the face has this corner");
+        let [du, dv] = orthonormal_masks(&du, &dv);
+        LimitStencil {
+            du,
+            dv,
+            ..self.limit(place.face, place.vertex)
         }
     }
 

@@ -2,32 +2,38 @@
 #ifndef ABI_GLSL
 #define ABI_GLSL
 
-// Set 0, binding: control vertices, three floats each, in local units.
-const uint BINDING_POSITIONS = 0u;
-// Set 0, binding: `Patch` records.
-const uint BINDING_PATCHES = 1u;
-// Set 0, binding: the numbers of the control vertices of each patch.
-const uint BINDING_CONTROLS = 2u;
-// Set 0, binding: texture coordinates, four a patch.
-const uint BINDING_TEXTURE = 3u;
-// Set 0, binding: the scratch ring, one vec4 a point.
-const uint BINDING_SCRATCH = 4u;
-// Set 0, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
-const uint BINDING_COUNTERS = 5u;
-// Set 0, binding: `PatchDraw` records, what the host decides about each patch.
-const uint BINDING_DRAWS = 6u;
-// Set 0, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
-const uint BINDING_CAPTURE = 7u;
-// Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
-const uint BINDING_POINTS = 8u;
-// Set 0, binding: `PointRow` records, one a point and step.
-const uint BINDING_POINT_ROWS = 9u;
-// Set 0, binding: `PointTerm` records.
-const uint BINDING_POINT_TERMS = 10u;
-// Set 0, binding: the patch of each instance, where patterns are drawn.
-const uint BINDING_INSTANCES = 11u;
-// Set 0, binding: the first of a method's own tables.
-const uint BINDING_TABLES = 12u;
+// The descriptor set of what topology decides: tables. Binding numbers are unique over all sets.
+const uint SET_TABLES = 0u;
+// The descriptor set of what positions decide: control vertices, and the points that are computed from them.
+const uint SET_POSE = 1u;
+// The descriptor set of what a frame decides, and of what the device writes in it.
+const uint SET_FRAME = 2u;
+// Tables, binding: one buffer a pass, of `Patch` records, then the tables of which `Bases` tells where they begin.
+const uint BINDING_TABLES = 0u;
+// Tables, binding, uniform: `Bases`.
+const uint BINDING_BASES = 1u;
+// Tables, binding: `PointRow` records, one a point and step.
+const uint BINDING_POINT_ROWS = 2u;
+// Tables, binding: `PointTerm` records.
+const uint BINDING_POINT_TERMS = 3u;
+// Pose, binding: control vertices, three floats each, in local units.
+const uint BINDING_POSITIONS = 4u;
+// Pose, binding: `Point` records, computed from the control vertices before patches are drawn.
+const uint BINDING_POINTS = 5u;
+// Frame, binding: the scratch ring, one vec4 a point.
+const uint BINDING_SCRATCH = 6u;
+// Frame, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
+const uint BINDING_COUNTERS = 7u;
+// Frame, binding: `PatchDraw` records, what the host decides about each patch.
+const uint BINDING_DRAWS = 8u;
+// Frame, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
+const uint BINDING_CAPTURE = 9u;
+// Frame, binding: the patch of each instance, where patterns are drawn.
+const uint BINDING_INSTANCES = 10u;
+// Frame, binding, uniform: `View` records.
+const uint BINDING_VIEWS = 11u;
+// How many views a frame may have.
+const uint VIEWS = 64u;
 // How many tables a method may have of its own.
 const uint TABLES = 4u;
 // Step of points: positions are sums of weighted control vertices.
@@ -271,12 +277,28 @@ struct Node {
     float sharpness;
 };
 
-// What changes from draw to draw; push constants.
-struct Frame {
+// Where the tables of a pass begin in its buffer, each in elements of its own; patches begin at 0.
+struct Bases {
+    // The numbers of the control vertices of each patch.
+    uint controls;
+    // Texture coordinates, four a patch.
+    uint texture;
+    // The method's own tables.
+    uint own[4];
+};
+
+// What a surface is seen with.
+struct View {
     // From local units to clip space.
-    mat4 view_projection;
+    mat4 clip_from_model;
     // The eye in local units.
     vec3 eye;
+    // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
+    vec2 displacement;
+};
+
+// What changes from draw to draw; push constants.
+struct Frame {
     // The tess level of a quad, 1..=64.
     float level;
     // `FRAME_...` flags.
@@ -287,16 +309,12 @@ struct Frame {
     uint end_patch;
     // Patches an instance.
     uint patches_per_instance;
-    // Points that the ring holds.
-    uint ring_points;
     // The batch's counter.
     uint counter;
-    // Vertices that the capture holds.
-    uint capture_vertices;
     // Where patterns are drawn, the segments of an edge of their lattice.
     uint segments;
-    // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
-    vec2 displacement;
+    // The number of the view.
+    uint view;
 };
 
 // A vertex as an evaluation shader produced it.

@@ -12,10 +12,10 @@ layout(local_size_x = POINT_INVOCATIONS) in;
 
 layout(push_constant, scalar) uniform StepBlock { PointStep point_step; };
 
-layout(set = 0, binding = BINDING_POSITIONS, scalar) readonly buffer PositionTable { vec3 positions[]; };
-layout(set = 0, binding = BINDING_POINTS, scalar) buffer PointTable { Point points[]; };
-layout(set = 0, binding = BINDING_POINT_ROWS, scalar) readonly buffer RowTable { PointRow rows[]; };
-layout(set = 0, binding = BINDING_POINT_TERMS, scalar) readonly buffer TermTable { PointTerm terms[]; };
+layout(set = SET_POSE, binding = BINDING_POSITIONS, scalar) readonly buffer PositionTable { vec3 positions[]; };
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) buffer PointTable { Point points[]; };
+layout(set = SET_TABLES, binding = BINDING_POINT_ROWS, scalar) readonly buffer RowTable { PointRow rows[]; };
+layout(set = SET_TABLES, binding = BINDING_POINT_TERMS, scalar) readonly buffer TermTable { PointTerm terms[]; };
 
 // Sums run in the order of the terms.
 void blend(PointRow row, uint number) {

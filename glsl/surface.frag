@@ -42,7 +42,7 @@ vec3 valence_colour(Patch record) {
 // The direction in which the pixel is seen. Of a triangle that is seen from its edge the line of sight may meet the plane behind the eye, or
 // nowhere.
 vec3 towards_eye(Axes view) {
-    vec3 to_eye = direction(frame.eye - in_position);
+    vec3 to_eye = direction(views[frame.view].eye - in_position);
     float along = dot(to_eye, view.back);
     return along > 0.0 ? to_eye : along < 0.0 ? -to_eye : view.back;
 }
@@ -71,7 +71,7 @@ vec3 seen_normal(vec3 to_eye) {
 void main() {
     Patch record = patch_record(in_patch);
     vec2 pixel = fwidth(in_uv);
-    Axes view = view_axes(frame.view_projection, frame.eye);
+    Axes view = view_axes(views[frame.view].clip_from_model, views[frame.view].eye);
     vec3 to_eye = towards_eye(view);
     vec3 normal = seen_normal(to_eye);
     vec3 colour = vec3(0.56, 0.33, 0.22);

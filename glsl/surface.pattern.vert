@@ -6,7 +6,7 @@
 #include "lib/whole.glsl"
 #include "lib/vertex.glsl"
 
-layout(set = 0, binding = BINDING_INSTANCES, scalar) readonly buffer InstanceTable { uint instances[]; };
+layout(set = SET_FRAME, binding = BINDING_INSTANCES, scalar) readonly buffer InstanceTable { uint instances[]; };
 
 void main() {
     uint number = instances[gl_InstanceIndex];

@@ -110,32 +110,38 @@ macro_rules! structs {
 }
 
 constants! {
-    /// Set 0, binding: control vertices, three floats each, in local units.
-    BINDING_POSITIONS = 0;
-    /// Set 0, binding: `Patch` records.
-    BINDING_PATCHES = 1;
-    /// Set 0, binding: the numbers of the control vertices of each patch.
-    BINDING_CONTROLS = 2;
-    /// Set 0, binding: texture coordinates, four a patch.
-    BINDING_TEXTURE = 3;
-    /// Set 0, binding: the scratch ring, one vec4 a point.
-    BINDING_SCRATCH = 4;
-    /// Set 0, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
-    BINDING_COUNTERS = 5;
-    /// Set 0, binding: `PatchDraw` records, what the host decides about each patch.
-    BINDING_DRAWS = 6;
-    /// Set 0, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
-    BINDING_CAPTURE = 7;
-    /// Set 0, binding: `Point` records, computed from the control vertices before patches are drawn.
-    BINDING_POINTS = 8;
-    /// Set 0, binding: `PointRow` records, one a point and step.
-    BINDING_POINT_ROWS = 9;
-    /// Set 0, binding: `PointTerm` records.
-    BINDING_POINT_TERMS = 10;
-    /// Set 0, binding: the patch of each instance, where patterns are drawn.
-    BINDING_INSTANCES = 11;
-    /// Set 0, binding: the first of a method's own tables.
-    BINDING_TABLES = 12;
+    /// The descriptor set of what topology decides: tables. Binding numbers are unique over all sets.
+    SET_TABLES = 0;
+    /// The descriptor set of what positions decide: control vertices, and the points that are computed from them.
+    SET_POSE = 1;
+    /// The descriptor set of what a frame decides, and of what the device writes in it.
+    SET_FRAME = 2;
+    /// Tables, binding: one buffer a pass, of `Patch` records, then the tables of which `Bases` tells where they begin.
+    BINDING_TABLES = 0;
+    /// Tables, binding, uniform: `Bases`.
+    BINDING_BASES = 1;
+    /// Tables, binding: `PointRow` records, one a point and step.
+    BINDING_POINT_ROWS = 2;
+    /// Tables, binding: `PointTerm` records.
+    BINDING_POINT_TERMS = 3;
+    /// Pose, binding: control vertices, three floats each, in local units.
+    BINDING_POSITIONS = 4;
+    /// Pose, binding: `Point` records, computed from the control vertices before patches are drawn.
+    BINDING_POINTS = 5;
+    /// Frame, binding: the scratch ring, one vec4 a point.
+    BINDING_SCRATCH = 6;
+    /// Frame, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
+    BINDING_COUNTERS = 7;
+    /// Frame, binding: `PatchDraw` records, what the host decides about each patch.
+    BINDING_DRAWS = 8;
+    /// Frame, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
+    BINDING_CAPTURE = 9;
+    /// Frame, binding: the patch of each instance, where patterns are drawn.
+    BINDING_INSTANCES = 10;
+    /// Frame, binding, uniform: `View` records.
+    BINDING_VIEWS = 11;
+    /// How many views a frame may have.
+    VIEWS = 64;
     /// How many tables a method may have of its own.
     TABLES = 4;
 
@@ -391,12 +397,28 @@ structs! {
         sharpness: f32,
     }
 
-    /// What changes from draw to draw; push constants.
-    Frame {
+    /// Where the tables of a pass begin in its buffer, each in elements of its own; patches begin at 0.
+    Bases {
+        /// The numbers of the control vertices of each patch.
+        controls: u32,
+        /// Texture coordinates, four a patch.
+        texture: u32,
+        /// The method's own tables.
+        own: [u32; 4],
+    }
+
+    /// What a surface is seen with.
+    View {
         /// From local units to clip space.
-        view_projection: [[f32; 4]; 4],
+        clip_from_model: [[f32; 4]; 4],
         /// The eye in local units.
         eye: [f32; 3],
+        /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
+        displacement: [f32; 2],
+    }
+
+    /// What changes from draw to draw; push constants.
+    Frame {
         /// The tess level of a quad, 1..=64.
         level: f32,
         /// `FRAME_...` flags.
@@ -407,16 +429,12 @@ structs! {
         end_patch: u32,
         /// Patches an instance.
         patches_per_instance: u32,
-        /// Points that the ring holds.
-        ring_points: u32,
         /// The batch's counter.
         counter: u32,
-        /// Vertices that the capture holds.
-        capture_vertices: u32,
         /// Where patterns are drawn, the segments of an edge of their lattice.
         segments: u32,
-        /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
-        displacement: [f32; 2],
+        /// The number of the view.
+        view: u32,
     }
 
     /// A vertex as an evaluation shader produced it.

@@ -77,7 +77,7 @@
 //! The library borrows device and allocator, records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
 //! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
 //!
-//! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 17 storage
+//! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 16 storage
 //! buffers a stage; `gpu::Backend::Geometry` also needs `geometryShader`.
 //! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on. With `vulkanMemoryModel` also switch on `vulkanMemoryModelDeviceScope`:
 //! our shaders' atomic operations have device scope.

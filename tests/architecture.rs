@@ -218,7 +218,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 29] = [
+const NAMED: [(&str, &str, &str); 28] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -230,7 +230,6 @@ const NAMED: [(&str, &str, &str); 29] = [
     ("tests/gpu/scale.rs", "quadtree", RING),
     ("tests/gpu/work.rs", "quadtree", RING),
     ("tests/layout.rs", "quadtree", TABLES),
-    ("tests/layout.rs", "bft", TABLES),
     ("tests/gpu/scale.rs", "flat", NO_RING),
     ("tests/cli_compare.rs", "quadtree", WORDS),
     ("tests/cli_compare.rs", "flat", WORDS),

@@ -172,13 +172,12 @@ fn run() -> Result<(), Box<dyn Error>> {
     // visible to the draws by the function itself.
     unsafe {
         surface.cmd_upload(&device, cmd);
-        surface.cmd_prepare(&device, cmd);
+        surface.cmd_prepare(&device, cmd, &[view(&model)])?;
     }
     picture.begin(cmd);
-    let view = view(&model);
     for batch in list.batches() {
         // SAFETY: in subpass 0 of the pipelines' render pass, which depends on itself as it must; the batches come in their order.
-        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, &view, batch)? };
+        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, 0, batch)? };
     }
     // Your other objects can be drawn here: bind their pipelines and descriptor sets again, `cmd_draw` has bound its own.
     picture.end(cmd);

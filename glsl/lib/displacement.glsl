@@ -18,13 +18,13 @@ float bumps(vec3 at, out vec3 slope) {
 }
 
 // Moves a point along its normal; the normal follows to first order. Nothing but position and normal has a say: where faces have the same bits
-// of both, they still have them afterwards.
-void displace(inout vec3 position, inout vec3 normal) {
+// of both, they still have them afterwards. `displacement` is its height, and its waves per unit of length.
+void displace(vec2 displacement, inout vec3 position, inout vec3 normal) {
     vec3 slope;
-    precise vec3 at = position * frame.displacement.y;
+    precise vec3 at = position * displacement.y;
     float height = bumps(at, slope);
-    precise vec3 moved = position + (frame.displacement.x * height) * normal;
-    precise vec3 gradient = slope * (frame.displacement.x * frame.displacement.y);
+    precise vec3 moved = position + (displacement.x * height) * normal;
+    precise vec3 gradient = slope * (displacement.x * displacement.y);
     precise float along = (gradient.x * normal.x + gradient.y * normal.y) + gradient.z * normal.z;
     precise vec3 tilted = normal - (gradient - along * normal);
     position = moved;

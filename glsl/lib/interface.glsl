@@ -8,10 +8,16 @@
 
 layout(push_constant, scalar) uniform FrameBlock { Frame frame; };
 
-layout(set = 0, binding = BINDING_POSITIONS, scalar) readonly buffer PositionTable { vec3 positions[]; };
-layout(set = 0, binding = BINDING_PATCHES, scalar) readonly buffer PatchTable { Patch patches[]; };
-layout(set = 0, binding = BINDING_CONTROLS, scalar) readonly buffer ControlTable { uint controls[]; };
-layout(set = 0, binding = BINDING_DRAWS, scalar) readonly buffer DrawTable { PatchDraw draws[]; };
+// All tables of a pass are in one buffer: blocks of one binding see it as elements of theirs, from 0 on. Nothing writes it.
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer PatchTable { Patch patches[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer ControlTable { uint words[]; };
+layout(set = SET_TABLES, binding = BINDING_BASES, scalar) uniform BaseBlock { Bases bases; };
+layout(set = SET_POSE, binding = BINDING_POSITIONS, scalar) readonly buffer PositionTable { vec3 positions[]; };
+layout(set = SET_FRAME, binding = BINDING_DRAWS, scalar) readonly buffer DrawTable { PatchDraw draws[]; };
+layout(set = SET_FRAME, binding = BINDING_VIEWS, scalar) uniform ViewBlock { View views[VIEWS]; };
+
+// Entry `place` of the lists of control vertices.
+uint control_at(uint place) { return words[bases.controls + place]; }
 
 // The patch of a number; surplus numbers of the last instance read the last patch and are not drawn.
 Patch patch_record(uint number) { return patches[min(number, frame.end_patch - 1u)]; }

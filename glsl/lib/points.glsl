@@ -4,9 +4,9 @@
 
 #include "lib/interface.glsl"
 
-layout(set = 0, binding = BINDING_POINTS, scalar) readonly buffer PointTable { Point points[]; };
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer PointTable { Point points[]; };
 
 // The point that is a patch's control point of this number.
-Point patch_control(Patch record, uint number) { return points[controls[record.controls + number]]; }
+Point patch_control(Patch record, uint number) { return points[control_at(record.controls + number)]; }
 
 #endif

@@ -5,14 +5,18 @@
 #include "lib/crease.glsl"
 #include "lib/interface.glsl"
 
-layout(set = 0, binding = BINDING_TABLES + 0, scalar) readonly buffer NodeTable { Node nodes[]; };
-layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer PointTable { uvec2 point_rows[]; };
-layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer WeightTable { float weights[]; };
-layout(set = 0, binding = BINDING_TABLES + 3, scalar) readonly buffer BorderTable { Border borders[]; };
+// The method's own tables, in this order.
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer NodeTable { Node nodes[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer PointTable { uvec2 point_rows[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer BorderTable { Border borders[]; };
+
+// Where the border of a patch is.
+uint border_of(Patch record) { return bases.own[3] + record.plan; }
 
 // The row of points that begins at `number` in the nodes' lists: two 16-bit halves a word, the lower first.
 uvec4 node_row(uint number) {
-    uvec2 row = point_rows[number >> 2u];
+    uvec2 row = point_rows[bases.own[1] + (number >> 2u)];
     return uvec4(row.x & 0xffffu, row.x >> 16u, row.y & 0xffffu, row.y >> 16u);
 }
 
@@ -49,9 +53,9 @@ Leaf find_leaf(uint root, vec2 from) {
     precise vec2 uv = from;
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     bvec2 upper = greaterThanEqual(uv, vec2(0.5));
-    uint number = root;
-    uint kind_word = nodes[root].kind;
-    uint points = nodes[root].points;
+    uint number = bases.own[0] + root;
+    uint kind_word = nodes[number].kind;
+    uint points = nodes[number].points;
     precise float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
     for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL; ++depth) {
@@ -59,7 +63,7 @@ Leaf find_leaf(uint root, vec2 from) {
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);
         scale *= 2.0;
-        number = points + uint(half_plane.x) + 2u * uint(half_plane.y);
+        number = bases.own[0] + points + uint(half_plane.x) + 2u * uint(half_plane.y);
         kind_word = nodes[number].kind;
         points = nodes[number].points;
     }

@@ -9,8 +9,8 @@
 
 #include "lib/interface.glsl"
 
-layout(set = 0, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
-layout(set = 0, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };
+layout(set = SET_FRAME, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
+layout(set = SET_FRAME, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };
 
 const uint NO_SLOT = 0xffffffffu;
 
@@ -22,7 +22,8 @@ uint take_slot(uint number, uint points) {
     atomicAdd(counters[COUNTER_POINTS], points);
     bool host = (frame.flags & FRAME_HOST_SLOTS) != 0u;
     uint slot = host ? draws[number].slot : atomicAdd(counters[frame.counter], points);
-    if (points <= frame.ring_points && slot <= frame.ring_points - points) return slot;
+    uint room = uint(scratch.length());
+    if (points <= room && slot <= room - points) return slot;
     atomicAdd(counters[COUNTER_OVERFLOWS], 1u);
     return NO_SLOT;
 }

@@ -15,9 +15,9 @@ layout(location = 2) out vec2 out_uv;
 layout(location = 3) out vec2 out_texture;
 layout(location = 4) flat out uint out_patch;
 
-layout(set = 0, binding = BINDING_TEXTURE, scalar) readonly buffer TextureTable { vec2 texture_corners[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer TextureTable { vec2 texture_corners[]; };
 
-layout(set = 0, binding = BINDING_CAPTURE, scalar) buffer Capture {
+layout(set = SET_FRAME, binding = BINDING_CAPTURE, scalar) buffer Capture {
     uint captured_count;
     Captured captured[];
 };
@@ -25,29 +25,31 @@ layout(set = 0, binding = BINDING_CAPTURE, scalar) buffer Capture {
 // Records the vertex; vertices beyond the capture's end are counted all the same.
 void capture(uint number, vec2 uv, Point point) {
     uint place = atomicAdd(captured_count, 1u);
-    if (place < frame.capture_vertices) captured[place] = Captured(number, uv, point.position, point.normal);
+    if (place < uint(captured.length())) captured[place] = Captured(number, uv, point.position, point.normal);
 }
 
 // Linear between the patch's corners. Twin of `Pass::texture_coordinates`.
 vec2 texture_coordinates(uint number, vec2 uv) {
-    vec2 a = texture_corners[4u * number];
-    vec2 b = texture_corners[4u * number + 1u];
-    vec2 c = texture_corners[4u * number + 2u];
+    uint first = bases.texture + 4u * number;
+    vec2 a = texture_corners[first];
+    vec2 b = texture_corners[first + 1u];
+    vec2 c = texture_corners[first + 2u];
 #ifdef TRIANGLES
     return (1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c;
 #else
-    return mix(mix(a, b, uv.x), mix(texture_corners[4u * number + 3u], c, uv.x), uv.y);
+    return mix(mix(a, b, uv.x), mix(texture_corners[first + 3u], c, uv.x), uv.y);
 #endif
 }
 
 void write_vertex(Patch record, uint number, vec2 uv, Point point) {
-    if (frame.displacement.x != 0.0 && has_one_normal(record, uv)) displace(point.position, point.normal);
+    vec2 displacement = views[frame.view].displacement;
+    if (displacement.x != 0.0 && has_one_normal(record, uv)) displace(displacement, point.position, point.normal);
     out_position = point.position;
     out_normal = point.normal;
     out_uv = uv;
     out_texture = texture_coordinates(number, uv);
     out_patch = number;
-    gl_Position = frame.view_projection * vec4(point.position, 1.0);
+    gl_Position = views[frame.view].clip_from_model * vec4(point.position, 1.0);
     if ((frame.flags & FRAME_PARITY) != 0u) gl_Position = amplified(gl_Position, point.position);
     if ((frame.flags & FRAME_CAPTURE) != 0u) capture(number, uv, point);
     if ((frame.flags & FRAME_COUNT) != 0u) atomicAdd(captured[number].patch_number, 1u);

@@ -33,9 +33,17 @@ vec3 patch_point(Patch record, uint number) { return vec3(0.0); }
 #ifdef STAGE_EVALUATION
 #include "lib/lattice.glsl"
 
-layout(set = 0, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
-layout(set = 0, binding = BINDING_TABLES + 1, scalar) readonly buffer FaceTable { TableFace faces[]; };
-layout(set = 0, binding = BINDING_TABLES + 2, scalar) readonly buffer PlaceTable { TablePlace places[]; };
+// The method's own tables, in this order.
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer FaceTable { TableFace faces[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer PlaceTable { TablePlace places[]; };
+
+// A face, whose weights begin where they do in the buffer.
+TableFace face_at(uint number) {
+    TableFace face = faces[bases.own[1] + number];
+    face.weights += bases.own[0];
+    return face;
+}
 
 // Where a point of the patch lies: a corner, an edge from its first corner on, or with neither the inside.
 struct Spot {
@@ -76,7 +84,7 @@ Point weighted(TableFace face, Shares shares) {
         for (uint k = 0u; k < rows; ++k) {
             weight += shares.shares[k] * weights[face.weights + shares.rows[k] * face.count + i];
         }
-        Point point = points[controls[face.controls + i]];
+        Point point = points[control_at(face.controls + i)];
         position += weight * point.position;
         normal += weight * point.normal;
     }
@@ -86,7 +94,7 @@ Point weighted(TableFace face, Shares shares) {
 // The normal from tangents (section II-C) at each point of the lattice, linear between. Their weights sum to zero, so they are sums of
 // differences, which lose less; zero where rounding may have made them. Each spoke errs by the rounding of both its ends.
 vec3 limit_normal(TableFace face, Shares shares) {
-    vec3 origin = points[controls[face.controls]].position;
+    vec3 origin = points[control_at(face.controls)].position;
     uint rows = row_count(shares);
     precise float roundings = float(face.count) + 4.0;
     precise vec3 normal = vec3(0.0);
@@ -97,7 +105,7 @@ vec3 limit_normal(TableFace face, Shares shares) {
         precise vec2 spread = vec2(0.0);
         precise vec2 total = vec2(0.0);
         for (uint i = face.count; i-- > 0u;) {
-            precise vec3 spoke = points[controls[face.controls + i]].position - origin;
+            precise vec3 spoke = points[control_at(face.controls + i)].position - origin;
             vec2 weight = vec2(weights[first + i], weights[first + face.count + i]);
             du += weight.x * spoke;
             dv += weight.y * spoke;
@@ -112,10 +120,10 @@ vec3 limit_normal(TableFace face, Shares shares) {
 
 // A point of a face, whose normal may come from another table.
 Point summed(uint number, Shares shares) {
-    TableFace face = faces[number];
+    TableFace face = face_at(number);
     Point point = weighted(face, shares);
     if (face.normals != number) {
-        TableFace other = faces[face.normals & ~TABLE_TANGENTS];
+        TableFace other = face_at(face.normals & ~TABLE_TANGENTS);
         if ((face.normals & TABLE_TANGENTS) != 0u) point.normal = limit_normal(other, shares);
         else point.normal = weighted(other, shares).normal;
     }
@@ -127,7 +135,7 @@ Point summed(uint number, Shares shares) {
 // invocations of a group are at edges and others inside.
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Spot found = spot(uv);
-    uint first = record.plan * 2u * CORNERS;
+    uint first = bases.own[2] + record.plan * 2u * CORNERS;
     uint number = record.plan;
     Shares shares;
     if (found.corner != NOWHERE) {
@@ -139,10 +147,10 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
         number = place.face;
         bool flipped = (place.side & PLACE_FLIPPED) != 0u;
         precise float reverse = 1.0 - found.along;
-        precise float at = (flipped ? reverse : found.along) * float(faces[number].segments);
-        shares = lattice_along(faces[number], place.side & ~PLACE_FLIPPED, at);
+        precise float at = (flipped ? reverse : found.along) * float(face_at(number).segments);
+        shares = lattice_along(face_at(number), place.side & ~PLACE_FLIPPED, at);
     } else {
-        shares = lattice_inside(faces[number], uv);
+        shares = lattice_inside(face_at(number), uv);
     }
     return summed(number, shares);
 }

@@ -14,10 +14,10 @@ const uint CONTROL_POINTS = 4u;
 #ifdef STAGE_VERTEX
 // Point i is the mean of some control vertices; four words tell where each point's end.
 vec3 control_point(Patch record, uint number) {
-    uint start = number == 0u ? 4u : controls[record.controls + number - 1u];
-    uint end = controls[record.controls + number];
+    uint start = number == 0u ? 4u : control_at(record.controls + number - 1u);
+    uint end = control_at(record.controls + number);
     vec3 sum = vec3(0.0);
-    for (uint i = start; i < end; ++i) sum += control_vertex(controls[record.controls + i]);
+    for (uint i = start; i < end; ++i) sum += control_vertex(control_at(record.controls + i));
     return sum / float(end - start);
 }
 #endif

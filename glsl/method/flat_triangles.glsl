@@ -14,7 +14,7 @@ const uint CONTROL_POINTS = 3u;
 #define CONTROL_VERTICES 3
 
 #ifdef STAGE_VERTEX
-vec3 control_point(Patch record, uint number) { return control_vertex(controls[record.controls + number]); }
+vec3 control_point(Patch record, uint number) { return control_vertex(control_at(record.controls + number)); }
 #endif
 
 #ifdef STAGE_CONTROL

@@ -23,20 +23,20 @@ const uint CONTROL_POINTS = CONTROL_INVOCATIONS;
 
 #ifdef STAGE_VERTEX
 vec3 control_point(Patch record, uint number) {
-    return control_vertex(controls[record.controls + min(number, borders[record.plan].sizes[0] - 1u)]);
+    return control_vertex(control_at(record.controls + min(number, borders[border_of(record)].sizes[0] - 1u)));
 }
 #endif
 
 #ifdef STAGE_CONTROL
 // Where the points of a use end in the slot, and where the slot does.
-uint points_end(Patch record, uint level, uint number) { return borders[record.plan].ends[min(level, HIGHEST_LEVEL)][number]; }
+uint points_end(Patch record, uint level, uint number) { return borders[border_of(record)].ends[min(level, HIGHEST_LEVEL)][number]; }
 uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
 
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
     vec3 piped = in_point[min(place, CONTROL_POINTS - 1u)];
 #ifdef LONG_RINGS
-    return place < CONTROL_POINTS ? piped : control_vertex(controls[record.controls + place]);
+    return place < CONTROL_POINTS ? piped : control_vertex(control_at(record.controls + place));
 #else
     return piped;
 #endif
@@ -65,14 +65,14 @@ struct Ring {
 // Bounded by the weights that there are for so many stencils: a plan that is garbage must not keep the device busy for ever. The factor is for
 // rounding.
 Ring use_ring(Patch record, uint number, uint stencils) {
-    uint size = borders[record.plan].sizes[number];
+    uint size = borders[border_of(record)].sizes[number];
     precise float needed = float(size) * float(stencils);
     precise float most = 1.00001 * float(weights.length());
-    return Ring(needed <= most ? size : 0u, borders[record.plan].rings[number], borders[record.plan].weights[number], number == 0u);
+    return Ring(needed <= most ? size : 0u, borders[border_of(record)].rings[number], bases.own[2] + borders[border_of(record)].weights[number], number == 0u);
 }
 
 // Vertex i of it.
-vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : controls[ring.places + i]); }
+vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : control_at(ring.places + i)); }
 
 // A stencil's sum over a ring, relative to `origin`: so it errs by what the ring's own size has for rounding.
 //
@@ -126,8 +126,8 @@ Tangents ring_tangents(Patch record, Ring ring, uint number) {
 //
 // There are two pairs of tangents at most, the limit's and those that may stand in for it; the loop makes them one piece of code.
 vec3 vertex_normal(Patch record, uint number) {
-    uint flags = borders[record.plan].flags[number];
-    uint near_pair = borders[record.plan].nearby[number - 5u];
+    uint flags = borders[border_of(record)].flags[number];
+    uint near_pair = borders[border_of(record)].nearby[number - 5u];
     bool has_near = near_pair != NO_TANGENTS;
     uint limit_pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
     Tangents limit;
@@ -157,7 +157,7 @@ struct Parts {
 
 Parts find_parts(Patch record, uint level) {
     Parts parts;
-    parts.plain_end = USES + borders[record.plan].plain_count;
+    parts.plain_end = USES + borders[border_of(record)].plain_count;
     for (uint number = 0u; number < USES; ++number) parts.ends[number] = points_end(record, level, number);
     return parts;
 }
@@ -183,8 +183,8 @@ Part find_part(Parts parts, uint next) {
 
 // The head of use `number`.
 vec4 use_head(Patch record, Parts parts, uint number) {
-    bool planned = borders[record.plan].sizes[number] > 0u;
-    uint first = number == 0u ? 0u : controls[borders[record.plan].rings[number]];
+    bool planned = borders[border_of(record)].sizes[number] > 0u;
+    uint first = number == 0u ? 0u : control_at(borders[border_of(record)].rings[number]);
     uint start = parts.plain_end;
     for (uint i = 1u; i < USES; ++i) start = number == i ? parts.ends[i - 1u] : start;
     return vec4(planned ? ring_point(record, first) : vec3(0.0), float(planned ? start : USES));
@@ -196,9 +196,9 @@ vec4 use_head(Patch record, Parts parts, uint number) {
 void run_stencils(Patch record, uint slot, uint level, uint count) {
     Parts parts = find_parts(record, level);
     if (gl_InvocationID < USES && count > 0u) scratch[slot + gl_InvocationID] = use_head(record, parts, gl_InvocationID);
-    uint plain = borders[record.plan].plain - USES;
+    uint plain = borders[border_of(record)].plain - USES;
     for (uint next = USES + gl_InvocationID; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
-        scratch[slot + next].xyz = ring_point(record, controls[plain + next]);
+        scratch[slot + next].xyz = ring_point(record, control_at(plain + next));
     }
     Ring inside = use_ring(record, 0u, min(parts.ends[0] - parts.plain_end, count));
     vec3 origin = ring_point(record, 0u);
@@ -228,7 +228,7 @@ Row scratch_row(uint first, uint number, Basis u) {
 
 // Not on infinite creases and at cusps.
 bool has_one_normal(Patch record, vec2 uv) {
-    return (borders[record.plan].flags[find_place(record.flags, uv).number] & USE_CREASED) == 0u;
+    return (borders[border_of(record)].flags[find_place(record.flags, uv).number] & USE_CREASED) == 0u;
 }
 
 // Row 1 is the position on an edge, row 2 that plus the derivative across.
@@ -242,7 +242,7 @@ const float RELATIVE = 4.0;
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     memoryBarrierBuffer();
     Place place = find_place(record.flags, uv);
-    uint flags = borders[record.plan].flags[place.number];
+    uint flags = borders[border_of(record)].flags[place.number];
     vec4 head = scratch[slot + place.number];
     uint first = slot + uint(head.w);
     if ((flags & USE_LIMIT) != 0u) {
@@ -250,7 +250,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
         return Point(vertex, scratch[first + 1u].xyz);
     }
     vec2 local = place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
-    Leaf leaf = find_leaf(borders[record.plan].roots[place.number], local);
+    Leaf leaf = find_leaf(borders[border_of(record)].roots[place.number], local);
     Basis u, v;
     creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
     if (leaf.kind == NODE_CURVE) v = CURVE;
@@ -272,7 +272,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 
 #ifdef STAGE_FRAGMENT
 Cell cell_at(Patch record, vec2 uv) {
-    Leaf leaf = find_leaf(borders[record.plan].roots[0], uv);
+    Leaf leaf = find_leaf(borders[border_of(record)].roots[0], uv);
     return Cell(leaf.kind, leaf.uv, leaf.scale);
 }
 #endif

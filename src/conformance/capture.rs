@@ -342,7 +342,7 @@ impl Loaded<'_> {
             |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 device.submit(|cmd| unsafe {
-                    self.surface().cmd_prepare(raw, cmd);
+                    self.surface().cmd_prepare(raw, cmd, &[self.view])?;
                     if let Some(query) = &query {
                         query.cmd_reset(cmd);
                     }
@@ -402,7 +402,7 @@ impl Loaded<'_> {
                     ring::cmd_ring_barrier(device, cmd);
                 }
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, &self.view, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
             }
         }
         Ok(())
@@ -423,7 +423,7 @@ impl Loaded<'_> {
             |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 device.submit(|cmd| unsafe {
-                    self.surface().cmd_prepare(raw, cmd);
+                    self.surface().cmd_prepare(raw, cmd, &[self.view])?;
                     target.begin(cmd, [0.0; 4]);
                     let drawn = self.cmd_draws(cmd, pipelines, &batches);
                     target.end(cmd);

@@ -52,11 +52,21 @@ pub enum Misuse {
         /// How many there are.
         rounds: u32,
     },
+    /// More views than a frame may have, or one that `cmd_prepare` was not given.
+    #[error("view {view} (from 0) of a frame that has {views}")]
+    View {
+        /// Which was asked for, from 0.
+        view: u32,
+        /// How many there are.
+        views: u32,
+    },
     /// What was prepared is another mesh's.
     #[error("what was prepared is of another mesh: faces, tags or scheme differ")]
     OtherMesh,
-    /// The draw list is another surface's.
-    #[error("the draw list was made for something else that was prepared, or for other options")]
+    /// A draw list, pose or frame slot is another surface's.
+    #[error(
+        "a draw list, pose or frame slot was made for something else that was prepared, or for other options"
+    )]
     OtherSurface,
     /// The draw list needs what the host decides about patches, and another list's is on the device, or none.
     #[error("what the host decides about this draw list's patches was not written last")]

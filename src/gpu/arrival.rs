@@ -2,10 +2,8 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::abi;
 use crate::error::{Error, Result};
-use crate::gpu::surface::TessellatedSurface;
-use crate::gpu::{Backend, Batch};
+use crate::gpu::{Backend, Batch, Drawing};
 use crate::method::Pass;
 
 /// How much of what was predicted has arrived.
@@ -56,12 +54,12 @@ impl std::ops::AddAssign for Arrival {
     }
 }
 
-impl TessellatedSurface {
-    /// Whether all vertices have come of the batches that were drawn since [`cmd_prepare`](Self::cmd_prepare), given once for each time. By the
+impl Drawing<'_> {
+    /// Whether all vertices have come of the batches that were drawn since [`cmd_prepare`](super::FrameSlot::cmd_prepare), given once for each time. By the
     /// count of each patch, so that vertices which a device evaluates twice do not stand in for others that are missing.
     ///
     /// Needs [`count_vertices`](super::SurfaceOptions::count_vertices), or [`capture_vertices`](super::SurfaceOptions::capture_vertices) and
-    /// batches of a single pass, each given once. Meaningful when [`cmd_read_back`](Self::cmd_read_back) has been executed, where no patch
+    /// batches of a single pass, each given once. Meaningful when [`cmd_read_back`](super::FrameSlot::cmd_read_back) has been executed, where no patch
     /// overflowed.
     ///
     /// # Errors
@@ -70,7 +68,7 @@ impl TessellatedSurface {
         let came = self.came()?;
         let mut predicted: Vec<Vec<u32>> = came.iter().map(|came| vec![0; came.len()]).collect();
         for batch in batches {
-            self.check_owner(batch.list())?;
+            self.slot.check_owner(self.tables, batch.list())?;
             for patch in batch.patches() {
                 predicted[batch.pass()][patch as usize] += self.evaluations(batch, patch);
             }
@@ -87,28 +85,26 @@ impl TessellatedSurface {
     /// How often a patch of a batch is evaluated at least, each time that it is drawn.
     fn evaluations(&self, batch: Batch<'_>, patch: u32) -> u32 {
         let (list, pass) = (batch.list(), batch.pass());
-        match self.options.backend {
-            Backend::Geometry if self.options.count_vertices => {
-                let levels = list.levels(&self.prepared, pass, patch);
+        let (prepared, options) = (self.tables.prepared(), self.slot.options());
+        match options.backend {
+            Backend::Geometry if options.count_vertices => {
+                let levels = list.levels(prepared, pass, patch);
                 levels.map_or(0, |levels| {
                     Backend::Geometry.vertices(&levels, list.cut().spacing)
                 })
             }
-            _ => list.vertices(&self.prepared, pass, patch),
+            _ => list.vertices(prepared, pass, patch),
         }
     }
 
     /// By pass and patch: vertices counted, or different ones captured. What is captured does not tell its pass, and counts for each.
     fn came(&self) -> Result<Vec<Vec<u32>>> {
-        self.counters()?;
-        if self.options.count_vertices {
-            let counts = self.buffers.counts().map(|counts| {
-                let records: &[abi::Captured] = bytemuck::cast_slice(&counts.bytes()[4..]);
-                records.iter().map(|record| record.patch_number).collect()
-            });
-            return Ok(counts.collect());
+        let slot = self.slot;
+        slot.counters()?;
+        if slot.options().count_vertices {
+            return Ok(slot.counts());
         }
-        let captured = self.captured()?.iter();
+        let captured = slot.captured()?.iter();
         let places: FxHashSet<(u32, [u32; 2])> = captured
             .map(|vertex| (vertex.patch_number, vertex.uv.map(f32::to_bits)))
             .collect();
@@ -121,6 +117,6 @@ impl TessellatedSurface {
             }
             came
         };
-        Ok(self.prepared.passes.iter().map(of_pass).collect())
+        Ok(self.tables.prepared().passes.iter().map(of_pass).collect())
     }
 }

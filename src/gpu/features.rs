@@ -5,11 +5,8 @@
 
 use ash::{khr, vk};
 
-use crate::abi;
 use crate::error::{Error, Misuse, Result};
-
-/// How many bindings set 0 has.
-pub(crate) const BINDINGS: u32 = abi::BINDING_TABLES + abi::TABLES;
+use crate::gpu::sets::STORAGE_BUFFERS;
 
 /// Features that we use where they exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,7 +72,7 @@ pub struct Support {
     pub vertex_pipeline_stores_and_atomics: bool,
     /// Buffers laid out like Rust's `#[repr(C)]`.
     pub scalar_block_layout: bool,
-    /// Storage buffers that a stage may see (`maxPerStageDescriptorStorageBuffers`): set 0 has 17, and devices need not have more than 4.
+    /// Storage buffers that a stage may see (`maxPerStageDescriptorStorageBuffers`): ours see 8 at most, and devices need not have more than 4.
     pub storage_buffers: u32,
     /// Bytes that a shader sees of a storage buffer (`maxStorageBufferRange`): no table, and no ring, is larger.
     pub max_storage_buffer_range: u32,
@@ -143,8 +140,10 @@ impl Support {
                 "scalar buffer layout (scalarBlockLayout)".into(),
             ),
             (
-                self.storage_buffers >= BINDINGS,
-                format!("{BINDINGS} storage buffers a stage (maxPerStageDescriptorStorageBuffers)"),
+                self.storage_buffers >= STORAGE_BUFFERS,
+                format!(
+                    "{STORAGE_BUFFERS} storage buffers a stage (maxPerStageDescriptorStorageBuffers)"
+                ),
             ),
         ];
         let lacking = needs.into_iter().filter(|(met, _)| !met);
@@ -336,7 +335,7 @@ mod tests {
             tessellation_shader: true,
             vertex_pipeline_stores_and_atomics: true,
             scalar_block_layout: true,
-            storage_buffers: BINDINGS,
+            storage_buffers: STORAGE_BUFFERS,
             ..Support::default()
         }
     }

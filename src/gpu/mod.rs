@@ -3,31 +3,41 @@
 //! The engine owns instance, device, queue and allocator; nothing here submits or waits.
 
 mod arrival;
+mod barrier;
+mod bound;
 pub mod buffer;
-mod buffers;
 mod call;
 mod draw;
 pub mod driver;
 pub mod features;
+mod frame_slot;
 mod layout;
 mod patterns;
 mod pipeline;
 mod points;
+mod pose;
 pub mod ring;
+mod sets;
 pub mod shaders;
 mod staging;
 mod surface;
+mod tables;
+mod view;
 pub mod workaround;
 
 pub use crate::frame::{Backend, Batch, Cut, DrawList, Slots, SurfaceOptions};
 pub use arrival::Arrival;
 pub use buffer::Buffer;
 pub(crate) use call::failed;
-pub use draw::{Counters, View};
+pub use draw::Drawing;
 pub use driver::{Driver, Version};
 pub use features::{Enabled, ExtraFeatures, FeatureChain, OptionalFeatures, Support};
+pub use frame_slot::{Counters, FrameSlot};
 pub use layout::Layout;
 pub use pipeline::{Fill, Pipelines, Shading, Target};
 pub use points::PointPipeline;
+pub use pose::Pose;
 pub use surface::TessellatedSurface;
+pub use tables::Tables;
+pub use view::View;
 pub use workaround::{Remedy, Workaround, workarounds};

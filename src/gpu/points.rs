@@ -4,9 +4,8 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Result};
-use crate::gpu::layout::STAGES;
-use crate::gpu::ring::stages;
-use crate::gpu::{Layout, TessellatedSurface, failed, shaders};
+use crate::gpu::sets::STAGES;
+use crate::gpu::{Layout, Pose, Tables, failed, shaders};
 
 /// The pipeline that computes points, the same for all methods.
 #[derive(Debug)]
@@ -62,15 +61,15 @@ impl PointPipeline {
     }
 }
 
-impl TessellatedSurface {
+impl Pose {
     /// Records the computation of the points from the control vertices in [`position_buffer`](Self::position_buffer), with the same bits as
     /// [`write_positions`](Self::write_positions) has. Methods without such points record nothing.
     ///
-    /// It waits for the draws of earlier frames, and later draws wait for it. Binds a compute pipeline and set 0, and pushes constants.
+    /// It waits for the draws of earlier frames, and later draws wait for it. Binds a compute pipeline and sets 0 and 1, and pushes constants.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made this surface, outside of a render pass, on a queue that also computes; control vertices are
-    /// visible to `SHADER_READ` in the compute stage. `layout` made this surface and `pipeline`. All of them live until the commands have
+    /// `cmd` is recording on `device`, which made this pose, for these tables, outside of a render pass, on a queue that also computes; control vertices are
+    /// visible to `SHADER_READ` in the compute stage. `layout` made all of this. All of them live until the commands have
     /// been executed.
     pub unsafe fn cmd_points(
         &self,
@@ -78,20 +77,17 @@ impl TessellatedSurface {
         cmd: vk::CommandBuffer,
         layout: &Layout,
         pipeline: &PointPipeline,
+        tables: &Tables,
     ) {
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
-        let Some(&set) = self.sets.first() else {
+        let prepared = tables.prepared();
+        if prepared.passes.is_empty() {
             return;
-        };
-        let readers = vk::PipelineStageFlags::VERTEX_SHADER | stages(self.options.backend);
+        }
+        let sets = [tables.set(0), self.set()];
+        let readers = self.readers();
         let mut before = readers | compute;
-        for step in self
-            .prepared
-            .points
-            .steps
-            .iter()
-            .filter(|step| step.count > 0)
-        {
+        for step in prepared.points.steps.iter().filter(|step| step.count > 0) {
             let constants = bytemuck::bytes_of(step);
             let groups = step.count.div_ceil(abi::POINT_INVOCATIONS);
             let bind = vk::PipelineBindPoint::COMPUTE;
@@ -99,7 +95,7 @@ impl TessellatedSurface {
             unsafe {
                 cmd_points_barrier(device, cmd, before, compute);
                 device.cmd_bind_pipeline(cmd, bind, pipeline.pipeline);
-                device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &[set], &[]);
+                device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &sets, &[]);
                 device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
                 device.cmd_dispatch(cmd, groups, 1, 1);
             }

@@ -6,6 +6,8 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::error::Result;
 use crate::gpu::Buffer;
+use crate::gpu::barrier::cmd_make_visible;
+use crate::gpu::bound::Bound;
 
 /// What is to be copied into numbered buffers, together.
 #[derive(Debug, Default)]
@@ -61,5 +63,34 @@ impl Staging {
     /// The memory, if it was made.
     pub fn into_buffer(self) -> Option<Buffer> {
         self.buffer
+    }
+}
+
+/// Records the copies that are due, after what earlier commands of the queue still read, and before whatever reads next in the stages `readers`.
+///
+/// # Safety
+/// `cmd` is recording on the device of both, outside of a render pass; the copies were added for buffers of `bound`.
+pub(super) unsafe fn cmd_copy(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    staging: &mut Staging,
+    bound: &Bound,
+    readers: vk::PipelineStageFlags,
+) {
+    let Some((from, copies)) = staging.take_copies() else {
+        return;
+    };
+    let transfer = vk::PipelineStageFlags::TRANSFER;
+    let (write, read) = (
+        vk::AccessFlags::TRANSFER_WRITE,
+        vk::AccessFlags::SHADER_READ | vk::AccessFlags::UNIFORM_READ,
+    );
+    // SAFETY: this function's contract; the copies were made with the buffers' sizes.
+    unsafe {
+        cmd_make_visible(device, cmd, readers | transfer, transfer, write);
+        for (number, copy) in copies.iter().filter(|(_, copy)| copy.size > 0) {
+            device.cmd_copy_buffer(cmd, from, bound.buffer(*number).raw(), &[*copy]);
+        }
+        cmd_make_visible(device, cmd, transfer, readers, read);
     }
 }

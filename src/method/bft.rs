@@ -84,11 +84,11 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
 }
 
 /// The bytes of a buffer that every device can bind (Vulkan spec, "Required Limits", `maxStorageBufferRange`).
-const MOST_BYTES: usize = 1 << 27;
+const MOST_BYTES: u64 = 1 << 27;
 
 /// Refuses tables of weights that a device may not be able to bind: many vertices of high valence, at a high level, make them so large.
 fn check_size(pass: &Pass) -> Result<()> {
-    let bytes = pass.tables.first().map_or(0, |weights| 4 * weights.len());
+    let bytes = pass.table_bytes();
     if bytes <= MOST_BYTES {
         return Ok(());
     }

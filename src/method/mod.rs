@@ -60,6 +60,7 @@ mod qas;
 mod quads;
 mod quadtree;
 mod surface;
+mod table;
 mod tags;
 mod triangles;
 mod unit;
@@ -80,6 +81,7 @@ pub use points::Points;
 pub use ptex::{from_ptex, to_ptex};
 pub use quadtree::PlanStatistics;
 pub use surface::{Controls, SurfacePoint};
+pub use table::Table;
 pub use tags::DepthTags;
 
 /// Which surface a method draws, and how exactly: distances are over the diagonal of the bounding box.
@@ -326,8 +328,8 @@ pub struct Pass {
     pub sides: Vec<[u32; 4]>,
     /// Texture coordinates of each patch's four corners.
     pub texture: Vec<[[f32; 2]; 4]>,
-    /// The method's own tables, as words, from `BINDING_TABLES` on.
-    pub tables: Vec<Vec<u32>>,
+    /// The method's own tables, `TABLES` at most.
+    pub tables: Vec<Table>,
     /// The points that a patch needs in the scratch ring at levels 0..=10, by its plan; empty when there is no ring.
     pub scratch_points: Vec<[u32; abi::HIGHEST_LEVEL as usize + 1]>,
     /// The products of a weight and a vertex that these take.

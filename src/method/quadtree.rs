@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
@@ -164,10 +164,10 @@ fn irregular(
     statistics.stencil_bytes += packed.stencil_bytes();
     statistics.add_points(&pass);
     pass.tables = vec![
-        bytemuck::cast_slice(&packed.nodes).to_vec(),
-        packed.points,
-        bytemuck::cast_slice(&packed.weights).to_vec(),
-        bytemuck::cast_slice(&records).to_vec(),
+        Table::of(&packed.nodes),
+        Table::of(bytemuck::cast_slice::<u32, [u32; 2]>(&packed.points)),
+        Table::of(&packed.weights),
+        Table::of(&records),
     ];
     Ok(pass)
 }

@@ -352,7 +352,7 @@ impl Loaded<'_> {
             |pipelines| {
                 // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
                 gpu.device.submit(|cmd| unsafe {
-                    self.surface().cmd_prepare(device, cmd);
+                    self.surface().cmd_prepare(device, cmd, &[self.view()])?;
                     if let Some(query) = &query {
                         query.cmd_reset(cmd);
                     }
@@ -382,18 +382,19 @@ impl Loaded<'_> {
     pub fn draw_over(&self, list: &DrawList, all: &[(&Pipelines, Displacement)]) -> Vec<u8> {
         let gpu = self.gpu;
         let device = gpu.device.raw();
+        let views = all.iter().map(|&(_, displacement)| View {
+            displacement,
+            ..self.view()
+        });
+        let views: Vec<View> = views.collect();
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
         let drawn = gpu.device.submit(|cmd| unsafe {
-            self.surface().cmd_prepare(device, cmd);
+            self.surface().cmd_prepare(device, cmd, &views)?;
             gpu.target().begin(cmd, [0.0; 4]);
-            for (round, &(pipelines, displacement)) in all.iter().enumerate() {
-                let view = View {
-                    displacement,
-                    ..self.view()
-                };
-                for batch in list.round(round as u32)? {
+            for (round, &(pipelines, _)) in (0..).zip(all) {
+                for batch in list.round(round)? {
                     let (surface, layout) = (self.surface(), gpu.layout());
-                    surface.cmd_draw(device, cmd, layout, pipelines, &view, batch)?;
+                    surface.cmd_draw(device, cmd, layout, pipelines, round, batch)?;
                 }
             }
             gpu.target().end(cmd);
@@ -422,7 +423,7 @@ impl Loaded<'_> {
                 }
                 let layout = self.gpu.layout();
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, &self.view(), batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
             }
         }
         Ok(())

@@ -14,6 +14,7 @@ const ARRAY_STRIDE: u32 = 6;
 const BINDING: u32 = 33;
 const OFFSET: u32 = 35;
 
+const STORAGE_UNIFORM: u32 = 2;
 const STORAGE_PUSH_CONSTANT: u32 = 9;
 const STORAGE_BUFFER: u32 = 12;
 
@@ -70,13 +71,13 @@ struct Types {
     variables: Vec<(u32, u32, u32)>,
 }
 
-/// The layout of every block that a module uses.
-pub fn blocks(bytes: &[u8]) -> BTreeMap<Block, Shape> {
+/// The layout of every block that a module uses; several may see one buffer.
+pub fn blocks(bytes: &[u8]) -> Vec<(Block, Shape)> {
     let types = Types::of(bytes);
     let blocks = types.variables.iter().filter_map(|&(kind, id, storage)| {
         let block = match storage {
             STORAGE_PUSH_CONSTANT => Block::PushConstants,
-            STORAGE_BUFFER => Block::Buffer {
+            STORAGE_UNIFORM | STORAGE_BUFFER => Block::Buffer {
                 binding: types.bindings[&id],
             },
             _ => return None,

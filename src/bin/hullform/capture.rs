@@ -78,11 +78,12 @@ pub fn record(
 ) -> Result<()> {
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
-        drawing.surface().cmd_prepare(gpu.device.raw(), cmd);
+        let (surface, device) = (drawing.surface(), gpu.device.raw());
+        surface.cmd_prepare(device, cmd, std::slice::from_ref(view))?;
         target.begin(cmd, [0.0; 4]);
-        let drawn = drawing.cmd_draw(cmd, pipelines, view, [batch]);
+        let drawn = drawing.cmd_draw(cmd, pipelines, [batch]);
         target.end(cmd);
-        drawing.surface().cmd_read_back(gpu.device.raw(), cmd);
+        surface.cmd_read_back(device, cmd);
         drawn
     })?;
     let overflows = drawing.counters()?.overflows;

@@ -223,7 +223,7 @@ impl<'a> Drawing<'a> {
         self.layout.as_ref().expect("there from new to drop")
     }
 
-    /// Records the draws of batches with some pipelines.
+    /// Records the draws of batches with some pipelines, seen with the one view that `cmd_prepare` was given.
     ///
     /// # Safety
     /// As [`TessellatedSurface::cmd_draw`].
@@ -231,7 +231,6 @@ impl<'a> Drawing<'a> {
         &self,
         cmd: vk::CommandBuffer,
         pipelines: &Pipelines,
-        view: &View,
         batches: impl IntoIterator<Item = Batch<'l>>,
     ) -> Result<()> {
         let (device, layout) = (self.gpu.device.raw(), self.layout());
@@ -239,7 +238,7 @@ impl<'a> Drawing<'a> {
             // SAFETY: this function's contract.
             unsafe {
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, view, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
             }
         }
         Ok(())

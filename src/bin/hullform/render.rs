@@ -303,7 +303,8 @@ fn draw_frame(
     let device = gpu.device.raw();
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
-        drawing.surface().cmd_prepare(device, cmd);
+        let seen = library_view(view, scene);
+        drawing.surface().cmd_prepare(device, cmd, &[seen])?;
         if let Some(query) = &query {
             query.cmd_reset(cmd);
         }
@@ -311,14 +312,13 @@ fn draw_frame(
         if let Some(query) = &query {
             query.cmd_begin(cmd);
         }
-        let seen = library_view(view, scene);
-        let mut drawn = drawing.cmd_draw(cmd, &pipelines[0], &seen, list.batches());
+        let mut drawn = drawing.cmd_draw(cmd, &pipelines[0], list.batches());
         if let Some(query) = &query {
             query.cmd_end(cmd);
         }
         if let Some(lines) = pipelines.get(1) {
             let again = list.round(1)?;
-            drawn = drawn.and_then(|()| drawing.cmd_draw(cmd, lines, &seen, again));
+            drawn = drawn.and_then(|()| drawing.cmd_draw(cmd, lines, again));
         }
         target.end(cmd);
         drawing.surface().cmd_read_back(device, cmd);

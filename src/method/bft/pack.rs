@@ -7,7 +7,7 @@ use crate::mesh::Model;
 use crate::method::bft::lattice::Lattice;
 use crate::method::bft::{Normals, Tables, domain, twin};
 use crate::method::patches::{self, Part};
-use crate::method::{Pass, to_ptex};
+use crate::method::{Pass, Table, to_ptex};
 use crate::tessellation::Domain;
 
 /// The passes of quads and of triangles, which may be empty.
@@ -244,9 +244,9 @@ impl Packer<'_> {
     fn finish(mut self, places: &[TablePlace]) -> Pass {
         self.add_normals();
         self.pass.tables = vec![
-            bytemuck::cast_slice(&self.weights).to_vec(),
-            bytemuck::cast_slice(&self.faces).to_vec(),
-            bytemuck::cast_slice(places).to_vec(),
+            Table::of(&self.weights),
+            Table::of(&self.faces),
+            Table::of(places),
         ];
         self.pass
     }

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec2};
 use super::*;
 use crate::error::Error;
 use crate::mesh::{ControlMesh, INFINITE_SHARPNESS, Triangulation, builtin, triangulated};
-use crate::method::{from_ptex, to_ptex};
+use crate::method::{Table, from_ptex, to_ptex};
 use crate::subdivision::{Blend, LimitSurface, Mask};
 
 fn model(mesh: ControlMesh, scheme: Scheme) -> Model {
@@ -156,9 +156,9 @@ fn weights_sum_to_one() {
 
 #[test]
 fn tables_that_no_device_has_to_bind_are_refused() {
-    let pass = |bytes: usize| {
+    let pass = |bytes: u64| {
         let mut pass = Pass::new("bft", Domain::Triangles, 1, twin);
-        pass.tables = vec![vec![0; bytes / 4]];
+        pass.tables = vec![Table::of(&vec![0u32; bytes as usize / 4])];
         pass
     };
     assert!(check_size(&pass(MOST_BYTES)).is_ok());

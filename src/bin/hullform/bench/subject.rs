@@ -129,7 +129,8 @@ impl<'a> Subject<'a> {
             if let Some(clock) = &self.clock {
                 clock.cmd_begin(cmd);
             }
-            self.drawing.surface().cmd_prepare(device, cmd);
+            let surface = self.drawing.surface();
+            surface.cmd_prepare(device, cmd, &[Drawing::nowhere()])?;
             if let Some(query) = query {
                 query.cmd_reset(cmd);
             }
@@ -137,18 +138,16 @@ impl<'a> Subject<'a> {
             if let Some(query) = query {
                 query.cmd_begin(cmd);
             }
-            let view = &Drawing::nowhere();
             let mut drawn = Ok(());
             for round in 0..self.passes {
                 let batches = list.round(round)?;
-                drawn =
-                    drawn.and_then(|()| self.drawing.cmd_draw(cmd, &self.pipelines, view, batches));
+                drawn = drawn.and_then(|()| self.drawing.cmd_draw(cmd, &self.pipelines, batches));
             }
             if let Some(query) = query {
                 query.cmd_end(cmd);
             }
             self.target.end(cmd);
-            self.drawing.surface().cmd_read_back(device, cmd);
+            surface.cmd_read_back(device, cmd);
             if let Some(clock) = &self.clock {
                 clock.cmd_end(cmd);
             }

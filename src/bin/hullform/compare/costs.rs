@@ -78,7 +78,7 @@ fn draw(gpu: &Gpu, ready: &Ready<'_>, target: &OffscreenTarget) -> Result<f64> {
     // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
     gpu.device.submit(|cmd| unsafe {
         let surface = ready.drawing.surface();
-        surface.cmd_prepare(gpu.device.raw(), cmd);
+        surface.cmd_prepare(gpu.device.raw(), cmd, &[Drawing::nowhere()])?;
         if let Some(query) = &ready.query {
             query.cmd_reset(cmd);
         }
@@ -87,8 +87,7 @@ fn draw(gpu: &Gpu, ready: &Ready<'_>, target: &OffscreenTarget) -> Result<f64> {
             query.cmd_begin(cmd);
         }
         let (pipelines, batches) = (&ready.pipelines, ready.list.batches());
-        let view = &Drawing::nowhere();
-        let drawn = ready.drawing.cmd_draw(cmd, pipelines, view, batches);
+        let drawn = ready.drawing.cmd_draw(cmd, pipelines, batches);
         if let Some(query) = &ready.query {
             query.cmd_end(cmd);
         }

@@ -1,0 +1,171 @@
+//! Positions, and what is computed from them: what an instance that deforms has of its own, and rigid instances share.
+
+use ash::vk;
+use glam::Vec3;
+use gpu_allocator::vulkan::Allocator;
+
+use crate::abi;
+use crate::error::{Error, Misuse, Result};
+use crate::gpu::bound::{Binding, Bound, Maker};
+use crate::gpu::staging::{Staging, cmd_copy};
+use crate::gpu::{Layout, Tables};
+use crate::method::{Controls, Prepared};
+
+/// Control vertices and the points that are computed from them, on the device. It borrows nothing; the owner calls [`Pose::destroy`].
+#[derive(Debug)]
+pub struct Pose {
+    /// The number of what was prepared.
+    prepared: u64,
+    bound: Bound,
+    staging: Staging,
+    positions: usize,
+    points: usize,
+    readers: vk::PipelineStageFlags,
+}
+
+impl Pose {
+    /// Makes buffers and a descriptor set for control vertices in local units. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
+    ///
+    /// # Errors
+    /// [`Misuse::Count`] when the number of positions is not that of the model; [`Misuse::BufferTooLarge`]; Vulkan's own.
+    ///
+    /// # Safety
+    /// `device` is live and made `tables`; `allocator` and `layout` were made for it. All commands go to queues of one family: the buffers are
+    /// `EXCLUSIVE`.
+    pub unsafe fn new(
+        device: &ash::Device,
+        allocator: &mut Allocator,
+        layout: &Layout,
+        tables: &Tables,
+        positions: &[Vec3],
+    ) -> Result<Pose> {
+        let prepared = tables.prepared();
+        prepared.check_count("positions", positions.len())?;
+        let mut pose = Pose {
+            prepared: prepared.number(),
+            bound: Bound::default(),
+            staging: Staging::default(),
+            positions: 0,
+            points: 0,
+            readers: layout.readers(),
+        };
+        let mut maker = Maker {
+            device,
+            allocator,
+            layout,
+        };
+        // SAFETY: this function's contract.
+        match unsafe { pose.make(&mut maker, prepared, positions) } {
+            Ok(()) => Ok(pose),
+            Err(error) => {
+                // SAFETY: nothing of it has been recorded.
+                unsafe { pose.destroy(device, allocator) };
+                Err(error)
+            }
+        }
+    }
+
+    /// # Safety
+    /// As [`Pose::new`].
+    unsafe fn make(
+        &mut self,
+        maker: &mut Maker<'_>,
+        prepared: &Prepared,
+        positions: &[Vec3],
+    ) -> Result<()> {
+        let Controls { vertices, points } = prepared.controls(positions.to_vec());
+        let vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.to_array()).collect();
+        let vertices: &[u8] = bytemuck::cast_slice(&vertices);
+        let points: &[u8] = bytemuck::cast_slice(&points);
+        let bound = &mut self.bound;
+        // SAFETY: this function's contract.
+        unsafe {
+            self.positions = bound.add_target(maker, "control vertices", vertices.len() as u64)?;
+            self.points = bound.add_target(maker, "points", points.len() as u64)?;
+            self.staging.add(self.positions, vertices);
+            self.staging.add(self.points, points);
+            let set = vec![
+                Binding::storage(abi::BINDING_POSITIONS, self.positions),
+                Binding::storage(abi::BINDING_POINTS, self.points),
+            ];
+            bound.describe(maker.device, maker.layout.pose_set(), &[set])?;
+            self.staging.fill(maker.device, maker.allocator)
+        }
+    }
+
+    /// Records the copy of what has changed to the device, after what earlier commands of the queue still draw, and before whatever draws next.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this pose, outside of a render pass, and will be executed. The pose lives until then, and
+    /// [`write_positions`](Self::write_positions) is not called before.
+    pub unsafe fn cmd_upload(&mut self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        // SAFETY: this function's contract.
+        unsafe { cmd_copy(device, cmd, &mut self.staging, &self.bound, self.readers) };
+    }
+
+    /// Replaces the control vertices, by positions in local units, and what is computed from them; they arrive with the next
+    /// [`cmd_upload`](Self::cmd_upload).
+    ///
+    /// The staging memory is written at once: no submitted [`cmd_upload`](Self::cmd_upload) may still read it. An engine that computes
+    /// positions on the device writes the [`position_buffer`](Self::position_buffer) instead, and records
+    /// [`cmd_points`](Self::cmd_points).
+    ///
+    /// # Errors
+    /// [`Misuse::Count`] when the number of positions is not that of the model; [`Misuse::OtherSurface`] for other tables.
+    pub fn write_positions(&mut self, tables: &Tables, positions: &[[f32; 3]]) -> Result<()> {
+        self.check(tables)?;
+        let prepared = tables.prepared();
+        prepared.check_count("positions", positions.len())?;
+        let vertices: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
+        let points = prepared.points.compute(&vertices);
+        self.staging
+            .replace(self.positions, bytemuck::cast_slice(positions))?;
+        self.staging
+            .replace(self.points, bytemuck::cast_slice(&points))
+    }
+
+    /// The control vertices on the device, three floats each, in local units: a storage buffer that is also a copy's target.
+    ///
+    /// Whoever writes it waits for earlier frames' vertex and control shaders, and makes the writes visible to `SHADER_READ` in the
+    /// vertex, control and evaluation stages before the next draw.
+    pub fn position_buffer(&self) -> vk::Buffer {
+        self.bound.buffer(self.positions).raw()
+    }
+
+    /// # Errors
+    /// [`Misuse::OtherSurface`] for tables that it was not made for.
+    pub(super) fn check(&self, tables: &Tables) -> Result<()> {
+        if self.prepared == tables.prepared().number() {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::OtherSurface))
+    }
+
+    /// The bytes on the device, those aside that an upload is staged in.
+    pub fn bytes(&self) -> u64 {
+        self.bound.bytes()
+    }
+
+    /// The stages that read it.
+    pub(super) fn readers(&self) -> vk::PipelineStageFlags {
+        self.readers
+    }
+
+    /// Its descriptor set, [`abi::SET_POSE`].
+    pub(super) fn set(&self) -> vk::DescriptorSet {
+        self.bound.set(0)
+    }
+
+    /// Destroys everything.
+    ///
+    /// # Safety
+    /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+        if let Some(staging) = self.staging.into_buffer() {
+            // SAFETY: this function's contract.
+            unsafe { staging.destroy(device, allocator) };
+        }
+        // SAFETY: as above.
+        unsafe { self.bound.destroy(device, allocator) };
+    }
+}

@@ -1,0 +1,171 @@
+//! What a method made of a topology, on the device: shared by all instances, passes, views and frames.
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocator;
+
+use crate::abi;
+use crate::error::Result;
+use crate::gpu::Layout;
+use crate::gpu::bound::{Binding, Bound, Maker};
+use crate::gpu::staging::{Staging, cmd_copy};
+use crate::method::Prepared;
+
+/// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
+/// `minUniformBufferOffsetAlignment`).
+const BASES_STRIDE: u64 = 256;
+
+/// What a method made of a topology, on the device. It borrows nothing; the owner calls [`Tables::destroy`].
+///
+/// Poses and frame slots are made for it; any number of them is drawn with the same tables.
+#[derive(Debug)]
+pub struct Tables {
+    prepared: Prepared,
+    bound: Bound,
+    staging: Staging,
+    readers: vk::PipelineStageFlags,
+}
+
+impl Tables {
+    /// Makes buffers and descriptor sets. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
+    ///
+    /// # Errors
+    /// [`Misuse::BufferTooLarge`](crate::Misuse::BufferTooLarge) where shaders would not see all; Vulkan's own.
+    ///
+    /// # Safety
+    /// `device` is live; `allocator` and `layout` were made for it. All commands go to queues of one family: the buffers are `EXCLUSIVE`.
+    pub unsafe fn new(
+        device: &ash::Device,
+        allocator: &mut Allocator,
+        layout: &Layout,
+        prepared: Prepared,
+    ) -> Result<Tables> {
+        let mut tables = Tables {
+            prepared,
+            bound: Bound::default(),
+            staging: Staging::default(),
+            readers: layout.readers(),
+        };
+        let mut maker = Maker {
+            device,
+            allocator,
+            layout,
+        };
+        // SAFETY: this function's contract.
+        match unsafe { tables.make(&mut maker) } {
+            Ok(()) => Ok(tables),
+            Err(error) => {
+                // SAFETY: nothing of it has been recorded.
+                unsafe { tables.destroy(device, allocator) };
+                Err(error)
+            }
+        }
+    }
+
+    /// # Safety
+    /// As [`Tables::new`].
+    unsafe fn make(&mut self, maker: &mut Maker<'_>) -> Result<()> {
+        let Tables {
+            prepared,
+            bound,
+            staging,
+            ..
+        } = self;
+        let mut sets = Vec::new();
+        let bases_bytes = BASES_STRIDE * prepared.passes.len() as u64;
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        // SAFETY: this function's contract, here and below.
+        let [all_bases, rows, terms] = unsafe {
+            let rows = bytemuck::cast_slice(&prepared.points.rows);
+            let terms = bytemuck::cast_slice(&prepared.points.terms);
+            let size = |bytes: &[u8]| bytes.len() as u64;
+            let numbers = [
+                bound.add(maker, "bases", bases_bytes, usage, MemoryLocation::GpuOnly)?,
+                bound.add_target(maker, "rows of points", size(rows))?,
+                bound.add_target(maker, "terms of points", size(terms))?,
+            ];
+            staging.add(numbers[1], rows);
+            staging.add(numbers[2], terms);
+            numbers
+        };
+        let mut bytes = vec![0; bases_bytes as usize];
+        for (offset, pass) in (0u64..)
+            .step_by(BASES_STRIDE as usize)
+            .zip(&prepared.passes)
+        {
+            let (words, bases) = pass.packed();
+            let words: &[u8] = bytemuck::cast_slice(&words);
+            let bases = bytemuck::bytes_of(&bases);
+            bytes[offset as usize..][..bases.len()].copy_from_slice(bases);
+            // SAFETY: as above.
+            let tables = unsafe { bound.add_target(maker, "tables", words.len() as u64)? };
+            staging.add(tables, words);
+            sets.push(vec![
+                Binding::storage(abi::BINDING_TABLES, tables),
+                Binding::uniform(
+                    abi::BINDING_BASES,
+                    all_bases,
+                    offset,
+                    size_of::<abi::Bases>() as u64,
+                ),
+                Binding::storage(abi::BINDING_POINT_ROWS, rows),
+                Binding::storage(abi::BINDING_POINT_TERMS, terms),
+            ]);
+        }
+        staging.add(all_bases, &bytes);
+        // SAFETY: as above.
+        unsafe {
+            bound.describe(maker.device, maker.layout.tables_set(), &sets)?;
+            staging.fill(maker.device, maker.allocator)
+        }
+    }
+
+    /// Records the copy to the device, before whatever draws next: the first time everything, afterwards nothing.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made these tables, outside of a render pass, and will be executed. They live until then, and
+    /// [`finish_upload`](Self::finish_upload) is not called before.
+    pub unsafe fn cmd_upload(&mut self, device: &ash::Device, cmd: vk::CommandBuffer) {
+        // SAFETY: this function's contract.
+        unsafe { cmd_copy(device, cmd, &mut self.staging, &self.bound, self.readers) };
+    }
+
+    /// Gives the memory back that the tables were staged in.
+    ///
+    /// # Safety
+    /// `device` and `allocator` made these tables, and the upload has been executed.
+    pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut Allocator) {
+        if let Some(staging) = std::mem::take(&mut self.staging).into_buffer() {
+            // SAFETY: this function's contract.
+            unsafe { staging.destroy(device, allocator) };
+        }
+    }
+
+    /// What was prepared.
+    pub fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+
+    /// The bytes on the device, those aside that an upload is staged in.
+    pub fn bytes(&self) -> u64 {
+        self.bound.bytes()
+    }
+
+    /// The descriptor set of a pass, [`abi::SET_TABLES`].
+    pub(super) fn set(&self, pass: usize) -> vk::DescriptorSet {
+        self.bound.set(pass)
+    }
+
+    /// Destroys everything.
+    ///
+    /// # Safety
+    /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+        if let Some(staging) = self.staging.into_buffer() {
+            // SAFETY: this function's contract.
+            unsafe { staging.destroy(device, allocator) };
+        }
+        // SAFETY: as above.
+        unsafe { self.bound.destroy(device, allocator) };
+    }
+}

@@ -1,0 +1,102 @@
+//! The tables of a pass, as they stand one behind the other in one buffer: shaders see few buffers, and devices need not have more.
+
+use std::ops::{Deref, DerefMut};
+
+use bytemuck::NoUninit;
+
+use crate::abi;
+use crate::method::Pass;
+
+/// A table of a method's own: its elements' words.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    words: Vec<u32>,
+    /// Words an element.
+    stride: usize,
+}
+
+impl Table {
+    /// Elements of whole words.
+    pub(super) fn of<T: NoUninit>(elements: &[T]) -> Table {
+        Table {
+            words: bytemuck::cast_slice(elements).to_vec(),
+            stride: size_of::<T>() / 4,
+        }
+    }
+}
+
+impl Deref for Table {
+    type Target = [u32];
+
+    fn deref(&self) -> &[u32] {
+        &self.words
+    }
+}
+
+impl DerefMut for Table {
+    fn deref_mut(&mut self) -> &mut [u32] {
+        &mut self.words
+    }
+}
+
+/// Where a table begins in the buffer of its pass, in elements of its own, and its words.
+struct Placed<'a> {
+    base: usize,
+    stride: usize,
+    words: &'a [u32],
+}
+
+impl Placed<'_> {
+    /// Where it begins and where it ends, in words.
+    fn range(&self) -> std::ops::Range<usize> {
+        let start = self.base * self.stride;
+        start..start + self.words.len()
+    }
+}
+
+impl Pass {
+    /// Patches, numbers of control vertices, texture coordinates, and the method's own tables: each begins at a multiple of its elements' size.
+    fn placed(&self) -> Vec<Placed<'_>> {
+        let shared = [
+            (size_of::<abi::Patch>(), bytemuck::cast_slice(&self.patches)),
+            (size_of::<u32>(), &self.controls[..]),
+            (size_of::<[f32; 2]>(), bytemuck::cast_slice(&self.texture)),
+        ];
+        let shared = shared.map(|(bytes, words)| (bytes / 4, words));
+        let own = self.tables.iter().map(|table| (table.stride, &table[..]));
+        let mut end = 0usize;
+        let all = shared.into_iter().chain(own).map(|(stride, words)| {
+            let base = end.div_ceil(stride.max(1));
+            let placed = Placed {
+                base,
+                stride,
+                words,
+            };
+            end = placed.range().end;
+            placed
+        });
+        all.collect()
+    }
+
+    /// The bytes that its tables take on a device, all in one buffer.
+    pub fn table_bytes(&self) -> u64 {
+        let placed = self.placed();
+        placed.last().map_or(0, |last| 4 * last.range().end as u64)
+    }
+
+    /// The words of that buffer, and where its tables begin there.
+    pub(crate) fn packed(&self) -> (Vec<u32>, abi::Bases) {
+        let placed = self.placed();
+        let mut words = vec![0; self.table_bytes() as usize / 4];
+        for table in &placed {
+            words[table.range()].copy_from_slice(table.words);
+        }
+        let base = |number: usize| placed.get(number).map_or(0, |table| table.base as u32);
+        let bases = abi::Bases {
+            controls: base(1),
+            texture: base(2),
+            own: [3, 4, 5, 6].map(base),
+        };
+        (words, bases)
+    }
+}

@@ -3,7 +3,7 @@
 //! Every `glsl/method/NAME.glsl` makes seven modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
 //! `NAME.fractional-even.tese`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of
 //! their line `#include "method"`. Spacing is an execution mode, hence a module of its own. Methods that define `SCRATCH_RING` need control
-//! shaders, and have neither of the modules that do without. Every other stage file in `glsl/` is a
+//! shaders, and have neither of the modules that do without; they have `NAME.comp`, which fills a cache. Every other stage file in `glsl/` is a
 //! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`.
 //!
 //! With the feature `shaderc` the modules are compiled here. Without it they are the files in `glsl/spirv`, which
@@ -21,7 +21,7 @@ type Result<T> = std::result::Result<T, String>;
 const OPTIONS: &str = "vulkan1.2 spirv1.5 performance";
 
 /// The shells, by the ending of the module's name and of the file, and the value of the macro `SPACING`.
-const SHELLS: [(&str, &str, Option<&str>); 7] = [
+const SHELLS: [(&str, &str, Option<&str>); 8] = [
     ("vert", "vert", None),
     ("tesc", "tesc", None),
     ("equal.tese", "tese", Some("equal_spacing")),
@@ -33,7 +33,11 @@ const SHELLS: [(&str, &str, Option<&str>); 7] = [
     ("pattern.vert", "pattern.vert", None),
     ("geom", "geom", None),
     ("frag", "frag", None),
+    ("comp", "comp", None),
 ];
+
+/// The shell that fills a cache with what control shaders compute for the ring.
+const FOR_CACHE: &str = "comp";
 
 /// The shells that evaluate patches without a control shader.
 const WITHOUT_CONTROL: [&str; 2] = ["pattern.vert", "geom"];
@@ -106,9 +110,10 @@ impl Sources {
         for method in &methods {
             let has_ring =
                 self.0[&format!("method/{method}.glsl")].contains("#define SCRATCH_RING");
-            let shells = SHELLS
-                .iter()
-                .filter(|(ending, _, _)| !(has_ring && WITHOUT_CONTROL.contains(ending)));
+            let shells = SHELLS.iter().filter(|(ending, _, _)| match *ending {
+                FOR_CACHE => has_ring,
+                ending => !(has_ring && WITHOUT_CONTROL.contains(&ending)),
+            });
             for &(ending, extension, spacing) in shells {
                 let file = format!("surface.{extension}");
                 if !self.0.contains_key(&file) {

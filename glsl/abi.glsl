@@ -18,7 +18,8 @@ const uint BINDING_POINT_ROWS = 2u;
 const uint BINDING_POINT_TERMS = 3u;
 // Pose, binding: control vertices, three floats each, in local units.
 const uint BINDING_POSITIONS = 4u;
-// Pose, binding: `Point` records, computed from the control vertices before patches are drawn.
+// Pose, binding: what is computed from the control vertices before patches are drawn, `Point` records or the cache: where each patch's slot
+// begins, then the control points, one vec4 each.
 const uint BINDING_POINTS = 5u;
 // Frame, binding: the scratch ring, one vec4 a point.
 const uint BINDING_SCRATCH = 6u;
@@ -285,6 +286,8 @@ struct Bases {
     uint texture;
     // The method's own tables.
     uint own[4];
+    // In a pose's cache, where the slots of the pass's patches stand.
+    uint cached;
 };
 
 // What a surface is seen with.

@@ -43,7 +43,7 @@ uvec2 snapped(Levels levels, uint n, uvec2 at) {
 
 void emit(Patch record, Levels levels, uint n, uvec2 at) {
     vec2 uv = lattice_uv(snapped(levels, n, at), n);
-    write_vertex(record, in_patch[0], uv, evaluate_patch(record, 0u, uv));
+    write_vertex(record, in_patch[0], uv, evaluate_patch(record, slot_of(in_patch[0]), uv));
     EmitVertex();
 }
 

@@ -15,5 +15,5 @@ void main() {
     uint index = uint(gl_VertexIndex);
     uvec2 place = uvec2(index & ((1u << PATTERN_SHIFT) - 1u), index >> PATTERN_SHIFT);
     vec2 uv = lattice_uv(place, frame.segments);
-    write_vertex(record, number, uv, evaluate_patch(record, 0u, uv));
+    write_vertex(record, number, uv, evaluate_patch(record, slot_of(number), uv));
 }

@@ -18,7 +18,7 @@ layout(location = 0) patch in uint in_patch;
 #ifdef SCRATCH_RING
 layout(location = 1) patch in uint in_slot;
 #else
-const uint in_slot = 0u;
+#define in_slot slot_of(in_patch)
 #endif
 
 void main() {

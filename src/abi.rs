@@ -126,7 +126,8 @@ constants! {
     BINDING_POINT_TERMS = 3;
     /// Pose, binding: control vertices, three floats each, in local units.
     BINDING_POSITIONS = 4;
-    /// Pose, binding: `Point` records, computed from the control vertices before patches are drawn.
+    /// Pose, binding: what is computed from the control vertices before patches are drawn, `Point` records or the cache: where each patch's slot
+    /// begins, then the control points, one vec4 each.
     BINDING_POINTS = 5;
     /// Frame, binding: the scratch ring, one vec4 a point.
     BINDING_SCRATCH = 6;
@@ -405,6 +406,8 @@ structs! {
         texture: u32,
         /// The method's own tables.
         own: [u32; 4],
+        /// In a pose's cache, where the slots of the pass's patches stand.
+        cached: u32,
     }
 
     /// What a surface is seen with.

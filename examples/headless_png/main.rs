@@ -152,6 +152,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             surface.prepared(),
             target,
             surface.options().backend,
+            surface.options().residence,
             cut.spacing,
             Fill::Solid(Shading::Lit),
         )?

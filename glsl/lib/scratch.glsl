@@ -1,6 +1,7 @@
-// The scratch ring: points that a control shader computes and the evaluation shader of the same patch reads.
+// Where control points live: in the scratch ring, where a control shader computes them and the evaluation shader of the same patch reads them; or in
+// the cache of a pose, where `surface.comp` computes each once and all draws read it.
 //
-// Invocation 0 of a control shader takes a slot, all 32 fill it, and the barriers make it visible before the slot's place is written as a
+// In the ring, invocation 0 of a control shader takes a slot, all 32 fill it, and the barriers make it visible before the slot's place is written as a
 // patch output. The evaluation shader reads the place first, then passes a barrier, then loads coherently. GLSL promises visibility to
 // stages that the writer triggers (GLSL 4.60, section 7.10), the memory barrier and `coherent` make it available in Vulkan's terms
 // (Vulkan spec, "Memory Model", availability and visibility).
@@ -9,6 +10,17 @@
 
 #include "lib/interface.glsl"
 
+#ifdef CACHED_POINTS
+#ifdef STAGE_COMPUTE
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) buffer Cache { vec4 scratch[]; };
+#else
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer Cache { vec4 scratch[]; };
+#endif
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer CacheSlots { uint cache_slots[]; };
+
+// Where the slot of a patch begins.
+uint slot_of(uint number) { return cache_slots[bases.cached + number]; }
+#else
 layout(set = SET_FRAME, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
 layout(set = SET_FRAME, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };
 
@@ -27,6 +39,7 @@ uint take_slot(uint number, uint points) {
     atomicAdd(counters[COUNTER_OVERFLOWS], 1u);
     return NO_SLOT;
 }
+#endif
 #endif
 
 #endif

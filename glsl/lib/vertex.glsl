@@ -41,6 +41,11 @@ vec2 texture_coordinates(uint number, vec2 uv) {
 #endif
 }
 
+#ifndef CACHED_POINTS
+// Methods without a cache have no slots there.
+uint slot_of(uint number) { return 0u; }
+#endif
+
 void write_vertex(Patch record, uint number, vec2 uv, Point point) {
     vec2 displacement = views[frame.view].displacement;
     if (displacement.x != 0.0 && has_one_normal(record, uv)) displace(displacement, point.position, point.normal);

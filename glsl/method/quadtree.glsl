@@ -8,7 +8,9 @@
 #ifndef QUADTREE_METHOD_GLSL
 #define QUADTREE_METHOD_GLSL
 
+#ifndef CACHED_POINTS
 #define SCRATCH_RING
+#endif
 
 #include "lib/border.glsl"
 #include "lib/cell.glsl"
@@ -18,27 +20,46 @@
 #include "lib/quadtree.glsl"
 #include "lib/scratch.glsl"
 
+#ifdef CACHED_POINTS
+// Nothing goes from stage to stage but the patch's number.
+const uint CONTROL_POINTS = 1u;
+#define CONTROL_VERTICES 1
+
+vec3 control_point(Patch record, uint number) { return vec3(0.0); }
+vec3 patch_point(Patch record, uint number) { return vec3(0.0); }
+#else
 const uint CONTROL_POINTS = CONTROL_INVOCATIONS;
 #define CONTROL_VERTICES 32
+#endif
 
-#ifdef STAGE_VERTEX
+#if defined(STAGE_VERTEX) && !defined(CACHED_POINTS)
 vec3 control_point(Patch record, uint number) {
     return control_vertex(control_at(record.controls + min(number, borders[border_of(record)].sizes[0] - 1u)));
 }
 #endif
 
-#ifdef STAGE_CONTROL
+#if defined(STAGE_COMPUTE) || (defined(STAGE_CONTROL) && !defined(CACHED_POINTS))
+#ifdef STAGE_COMPUTE
+#define INVOCATION gl_LocalInvocationID.x
+#else
+#define INVOCATION gl_InvocationID
+#endif
+
 // Where the points of a use end in the slot, and where the slot does.
 uint points_end(Patch record, uint level, uint number) { return borders[border_of(record)].ends[min(level, HIGHEST_LEVEL)][number]; }
 uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
 
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
-    vec3 piped = in_point[min(place, CONTROL_POINTS - 1u)];
+#ifdef STAGE_COMPUTE
+    return control_vertex(control_at(record.controls + place));
+#else
+    vec3 piped = in_point[min(place, CONTROL_INVOCATIONS - 1u)];
 #ifdef LONG_RINGS
-    return place < CONTROL_POINTS ? piped : control_vertex(control_at(record.controls + place));
+    return place < CONTROL_INVOCATIONS ? piped : control_vertex(control_at(record.controls + place));
 #else
     return piped;
+#endif
 #endif
 }
 
@@ -86,7 +107,7 @@ vec3 stencil_point(Patch record, Ring ring, vec3 origin, uint number) {
     for (uint i = 0u; i < ring.size; ++i) {
         precise vec3 term = weights[weight + i] * (ring_vertex(record, ring, i) - origin);
         precise vec3 next = sum + term;
-        if (ring.size > CONTROL_POINTS) {
+        if (ring.size > CONTROL_INVOCATIONS) {
             add_compensated(sum, lost, term);
         } else {
             sum = next;
@@ -195,17 +216,17 @@ vec4 use_head(Patch record, Parts parts, uint number) {
 // these are short, and if all went through them together most would wait most of the time.
 void run_stencils(Patch record, uint slot, uint level, uint count) {
     Parts parts = find_parts(record, level);
-    if (gl_InvocationID < USES && count > 0u) scratch[slot + gl_InvocationID] = use_head(record, parts, gl_InvocationID);
+    if (INVOCATION < USES && count > 0u) scratch[slot + INVOCATION] = use_head(record, parts, INVOCATION);
     uint plain = borders[border_of(record)].plain - USES;
-    for (uint next = USES + gl_InvocationID; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
+    for (uint next = USES + INVOCATION; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
         scratch[slot + next].xyz = ring_point(record, control_at(plain + next));
     }
     Ring inside = use_ring(record, 0u, min(parts.ends[0] - parts.plain_end, count));
     vec3 origin = ring_point(record, 0u);
-    for (uint next = parts.plain_end + gl_InvocationID; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
+    for (uint next = parts.plain_end + INVOCATION; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
         scratch[slot + next].xyz = stencil_point(record, inside, origin, next - parts.plain_end);
     }
-    for (uint next = parts.ends[0] + gl_InvocationID; next < count; next += CONTROL_INVOCATIONS) {
+    for (uint next = parts.ends[0] + INVOCATION; next < count; next += CONTROL_INVOCATIONS) {
         Part part = find_part(parts, next);
         Ring ring = use_ring(record, part.number, min(part.end - part.start, count));
         bool is_normal = part.number >= 5u && next > part.start;
@@ -213,7 +234,7 @@ void run_stencils(Patch record, uint slot, uint level, uint count) {
         vec3 point = stencil_point(record, ring, ring_vertex(record, ring, 0u), next - part.start);
         if (!is_normal) scratch[slot + next].xyz = point;
     }
-    for (uint number = 5u + gl_InvocationID; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
+    for (uint number = 5u + INVOCATION; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
         uint place = parts.ends[number - 1u] + 1u;
         if (place < min(parts.ends[number], count)) scratch[slot + place].xyz = vertex_normal(record, number);
     }
@@ -240,7 +261,9 @@ const float RELATIVE = 4.0;
 
 // Inside by the patch's own plan, on edges and at corners by those that all faces there share.
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+#ifndef CACHED_POINTS
     memoryBarrierBuffer();
+#endif
     Place place = find_place(record.flags, uv);
     uint flags = borders[border_of(record)].flags[place.number];
     vec4 head = scratch[slot + place.number];

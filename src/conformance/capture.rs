@@ -12,8 +12,8 @@ use crate::conformance::Context;
 use crate::conformance::context::Seen;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, Shading, SurfaceOptions,
-    Target, TessellatedSurface, View, Workaround, ring,
+    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, Residence, Shading,
+    SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
@@ -143,7 +143,15 @@ impl Bench {
         // SAFETY: all of one live device.
         unsafe {
             Pipelines::new(
-                device, layout, cache, prepared, target, backend, spacing, fill,
+                device,
+                layout,
+                cache,
+                prepared,
+                target,
+                backend,
+                Residence::Ring,
+                spacing,
+                fill,
             )
         }
     }

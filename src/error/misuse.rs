@@ -71,8 +71,13 @@ pub enum Misuse {
     /// The draw list needs what the host decides about patches, and another list's is on the device, or none.
     #[error("what the host decides about this draw list's patches was not written last")]
     NotWritten,
+    /// A pose has no cache, or not the points of the level that is drawn, or not those of its positions.
+    #[error(
+        "the control points of this draw list were not cached: cmd_cache comes before it, with a pose that has a cache"
+    )]
+    NotCached,
     /// The pipelines draw something else.
-    #[error("the pipelines are for other passes, another backend or another spacing")]
+    #[error("the pipelines are for other passes, another backend, residence or spacing")]
     OtherPipelines,
     /// A list of one entry a control vertex has another length.
     #[error("{given} {what} for {expected} control vertices")]

@@ -2,7 +2,7 @@
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::Cut;
+use crate::frame::{Cut, Residence};
 use crate::method::Prepared;
 use crate::tessellation::{Levels, Spacing, lattice_rows, lattice_vertices};
 
@@ -14,7 +14,7 @@ pub enum Backend {
     Tessellator,
     /// The host. A refinement pattern for each combination of levels is kept as a list of indices, and drawn as an instance a patch; the vertex
     /// shader evaluates. Levels are powers of two, and at level 2^d a triangle is what d splits in four make of it. For patches that need no
-    /// scratch ring.
+    /// scratch ring, or whose control points are cached.
     Pattern,
     /// The geometry shader, a row of triangles an invocation. Levels are powers of two, 32 at most, since devices need not have more than 32
     /// invocations and 1024 components of output. For patches that need no scratch ring; needs the feature `geometryShader`.
@@ -68,12 +68,13 @@ impl Backend {
     ///
     /// # Errors
     /// [`Misuse::BackendWithoutRing`] and [`Misuse::BackendLevel`] when it cannot.
-    pub fn check(self, prepared: &Prepared, level: f32) -> Result<()> {
+    pub fn check(self, prepared: &Prepared, residence: Residence, level: f32) -> Result<()> {
         if self == Backend::Tessellator {
             return Ok(());
         }
         let mut passes = prepared.passes.iter();
-        if passes.any(|pass| !pass.scratch_points.is_empty()) {
+        let ring = residence == Residence::Ring;
+        if ring && passes.any(|pass| !pass.scratch_points.is_empty()) {
             return Err(Error::Misuse(Misuse::BackendWithoutRing {
                 backend: self.name(),
             }));

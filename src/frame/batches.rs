@@ -33,8 +33,8 @@ impl Run {
 /// What bounds a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Bounds {
-    /// Points in the ring.
-    pub points: u32,
+    /// Points in the ring, where there is one.
+    pub ring: Option<u32>,
     /// Vertices.
     pub vertices: u32,
     /// Who makes them.
@@ -60,7 +60,7 @@ pub(super) fn batches(prepared: &Prepared, cut: Cut, bounds: Bounds) -> Result<V
                 ..bounds.longest(pass, cut, first)?
             };
             bounds.trim(&mut run, pass, cut, most);
-            ring_batch += u32::from(!pass.scratch_points.is_empty());
+            ring_batch += u32::from(bounds.uses_ring(pass));
             first = run.patches().end;
             runs.push(run);
         }
@@ -69,6 +69,11 @@ pub(super) fn batches(prepared: &Prepared, cut: Cut, bounds: Bounds) -> Result<V
 }
 
 impl Bounds {
+    /// Whether patches of a pass take slots in the ring.
+    pub fn uses_ring(&self, pass: &Pass) -> bool {
+        self.ring.is_some() && !pass.scratch_points.is_empty()
+    }
+
     /// How many patches an instance may hold: of those that are cut finest.
     fn patches_per_instance(&self, pass: &Pass, cut: Cut) -> u32 {
         let Some(most) = self.instance_vertices else {
@@ -93,13 +98,14 @@ impl Bounds {
         };
         for patch in first as usize..pass.patches.len() {
             let [points, vertices] = self.needs(pass, cut, patch);
-            if points > self.points {
+            let room = self.ring.unwrap_or(0);
+            if points > room {
                 return Err(Error::Misuse(Misuse::RingTooSmall {
                     needed: 16 * u64::from(points),
-                    given: 16 * u64::from(self.points),
+                    given: 16 * u64::from(room),
                 }));
             }
-            let fits = run.points + points <= self.points
+            let fits = run.points + points <= room
                 && run.vertices.saturating_add(vertices) <= self.vertices;
             if run.per_instance > 0 && !fits {
                 break;
@@ -127,7 +133,11 @@ impl Bounds {
     fn needs(&self, pass: &Pass, cut: Cut, patch: usize) -> [u32; 2] {
         let levels = cut.levels(pass, patch);
         let vertices = levels.map_or(0, |levels| self.backend.vertices(&levels, cut.spacing));
-        [cut.points(pass, patch), vertices]
+        let points = match self.uses_ring(pass) {
+            true => cut.points(pass, patch),
+            false => 0,
+        };
+        [points, vertices]
     }
 }
 
@@ -166,7 +176,7 @@ pub(super) fn most_ring_batches(
     let mut most = 0;
     for cut in cuts {
         let runs = batches(prepared, bounds.backend.cut(cut), whole)?;
-        let ring = |run: &&Run| !prepared.passes[run.pass].scratch_points.is_empty();
+        let ring = |run: &&Run| whole.uses_ring(&prepared.passes[run.pass]);
         most = most.max(runs.iter().filter(ring).count() as u32);
     }
     Ok(most * (1 + u32::from(bounds.instance_vertices.is_some())))

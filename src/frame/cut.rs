@@ -1,7 +1,7 @@
 //! How finely a surface is cut.
 
 use crate::abi;
-use crate::method::Pass;
+use crate::method::{Pass, Prepared};
 use crate::tessellation::{Levels, Spacing, levels, required_level};
 
 /// How finely a surface is cut, the same for all of it.
@@ -43,6 +43,31 @@ impl Cut {
     fn plan_level(&self, pass: &Pass, patch: usize) -> Option<u32> {
         let level = |levels| required_level(&levels, abi::HIGHEST_LEVEL);
         self.levels(pass, patch).map(level)
+    }
+
+    /// The cut at which a cache has the control points of a plan level.
+    pub(crate) fn of_plan_level(level: u32) -> Cut {
+        Cut {
+            level: (1u32 << level.min(6)) as f32,
+            spacing: Spacing::Equal,
+        }
+    }
+
+    /// The least plan level at which a cache has all control points that are drawn at this cut, or, where depth tags lower levels, at less.
+    pub(crate) fn cached_level(&self, prepared: &Prepared) -> u32 {
+        let passes = prepared.passes.iter();
+        let cached = passes.filter(|pass| pass.cached.is_some());
+        let levels = cached.map(|pass| self.cached_level_of(pass));
+        levels.max().unwrap_or(0)
+    }
+
+    fn cached_level_of(&self, pass: &Pass) -> u32 {
+        let enough = |&level: &u32| {
+            let cached = Cut::of_plan_level(level);
+            (0..pass.patches.len())
+                .all(|patch| cached.plan_level(pass, patch) >= self.plan_level(pass, patch))
+        };
+        (0..=6).find(enough).unwrap_or(6)
     }
 
     /// The vertices that the tessellator makes of a patch; none where there is no such patch.

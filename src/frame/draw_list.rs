@@ -9,7 +9,7 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
-use crate::frame::{Backend, Cut, Draw, Slots, SurfaceOptions};
+use crate::frame::{Backend, Cut, Draw, SurfaceOptions};
 use crate::method::{DepthTags, Pass, Prepared};
 use crate::tessellation::{
     Levels, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
@@ -52,8 +52,9 @@ impl DrawList {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         options.check(prepared)?;
         let cut = options.cut(cut)?;
-        let runs = batches(prepared, cut, options.bounds(instance_vertices))?;
-        let uses_ring = |run: &&Run| !prepared.passes[run.pass].scratch_points.is_empty();
+        let bounds = options.bounds(instance_vertices);
+        let runs = batches(prepared, cut, bounds)?;
+        let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
         let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
         let mut list = DrawList {
             number: NUMBER.fetch_add(1, Ordering::Relaxed),
@@ -90,7 +91,7 @@ impl DrawList {
 
     /// Fills in draws, and what the host decides about each patch where it does.
     fn decide(&mut self, prepared: &Prepared) {
-        let records = self.options.slots == Slots::Host || self.tagged.is_some();
+        let records = self.options.has_host_slots() || self.tagged.is_some();
         let patterns = self.options.backend == Backend::Pattern;
         let mut all = Patterns::default();
         for pass in &prepared.passes {
@@ -176,7 +177,7 @@ impl DrawList {
 
     /// Whether it holds what must be on the device before it is drawn.
     pub fn has_decisions(&self) -> bool {
-        self.options.slots == Slots::Host
+        self.options.has_host_slots()
             || self.options.backend == Backend::Pattern
             || self.tagged.is_some()
     }

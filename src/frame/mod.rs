@@ -15,6 +15,6 @@ pub use backend::Backend;
 pub use cut::Cut;
 pub use draw::Draw;
 pub use draw_list::{Batch, DrawList};
-pub use options::{Slots, SurfaceOptions};
+pub use options::{Residence, Slots, SurfaceOptions};
 #[cfg(feature = "vulkan")]
 pub(crate) use patterns::{Key, key};

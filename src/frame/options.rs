@@ -16,12 +16,39 @@ pub enum Slots {
     Host,
 }
 
+/// Where the control points live of patches that are evaluated by stencils.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Residence {
+    /// In the scratch ring: the control shaders compute them as they go (Brainerd et al. 2016, section 5). Memory is bounded, and every draw
+    /// computes them again. Best for a single pass over what moves.
+    #[default]
+    Ring,
+    /// In a cache of the pose: a compute pass computes each once (section 8.2), for any number of passes, views, frames and back-ends. No draw
+    /// waits for another.
+    Cache,
+}
+
+impl Residence {
+    /// All.
+    pub const ALL: [Residence; 2] = [Residence::Ring, Residence::Cache];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Residence::Ring => "ring",
+            Residence::Cache => "cache",
+        }
+    }
+}
+
 /// How a surface uses the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceOptions {
     /// Who cuts patches into triangles.
     pub backend: Backend,
-    /// Bytes of the scratch ring.
+    /// Where control points live.
+    pub residence: Residence,
+    /// Bytes of the scratch ring; there is none where control points are cached.
     pub ring_bytes: u64,
     /// Who gives slots.
     pub slots: Slots,
@@ -45,10 +72,11 @@ pub struct SurfaceOptions {
 }
 
 impl Default for SurfaceOptions {
-    /// The tessellator, a ring of 1 MiB with counters, no capture, no counts, every level, barriers by `cmd_draw`.
+    /// The tessellator, control points in a ring of 1 MiB with counters, no capture, no counts, every level, barriers by `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
             backend: Backend::Tessellator,
+            residence: Residence::Ring,
             ring_bytes: 1 << 20,
             slots: Slots::Counter,
             capture_vertices: 0,
@@ -74,7 +102,8 @@ impl SurfaceOptions {
             return Err(Error::Misuse(Misuse::CountedAndCaptured));
         }
         check_level(self.greatest_level, MAX_LEVEL)?;
-        self.backend.check(prepared, self.greatest_level)
+        self.backend
+            .check(prepared, self.residence, self.greatest_level)
     }
 
     /// A cut as the backend makes it.
@@ -93,11 +122,16 @@ impl SurfaceOptions {
             captured => captured,
         };
         Bounds {
-            points: self.ring_points(),
+            ring: (self.residence == Residence::Ring).then(|| self.ring_points()),
             vertices,
             backend: self.backend,
             instance_vertices: instance_vertices.filter(|_| self.backend == Backend::Tessellator),
         }
+    }
+
+    /// Whether the host gives slots in the ring.
+    pub(super) fn has_host_slots(&self) -> bool {
+        self.slots == Slots::Host && self.residence == Residence::Ring
     }
 
     /// Points that the ring holds.
@@ -106,7 +140,7 @@ impl SurfaceOptions {
     }
 
     /// The cuts that need the most batches.
-    pub(super) fn greatest_cuts(&self) -> [Cut; 2] {
+    pub(crate) fn greatest_cuts(&self) -> [Cut; 2] {
         [Spacing::Equal, Spacing::FractionalEven].map(|spacing| Cut {
             level: self.greatest_level,
             spacing,

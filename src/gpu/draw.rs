@@ -31,7 +31,7 @@ impl Drawing<'_> {
     ///
     /// # Errors
     /// [`Misuse::OtherSurface`](crate::Misuse::OtherSurface), [`Misuse::NotWritten`](crate::Misuse::NotWritten),
-    /// [`Misuse::View`](crate::Misuse::View) and [`Misuse::OtherPipelines`](crate::Misuse::OtherPipelines); nothing has been recorded then.
+    /// [`Misuse::View`](crate::Misuse::View), [`Misuse::NotCached`](crate::Misuse::NotCached) and [`Misuse::OtherPipelines`](crate::Misuse::OtherPipelines); nothing has been recorded then.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made all of this, after `cmd_upload` of tables and pose and
@@ -53,6 +53,7 @@ impl Drawing<'_> {
         pose.check(tables)?;
         slot.check_list(tables, batch.list())?;
         slot.check_view(view)?;
+        pose.check_cached(tables, batch.list())?;
         let pass = batch.pass();
         let pipeline = pipelines.for_pass(tables.prepared(), batch.list(), pass)?;
         let graphics = vk::PipelineBindPoint::GRAPHICS;

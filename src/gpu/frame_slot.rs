@@ -8,10 +8,11 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Backend, Cut, DrawList, SurfaceOptions};
+use crate::frame::{Backend, Cut, DrawList, Residence, SurfaceOptions};
 use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::patterns::Patterns;
+use crate::gpu::pipeline::control_points;
 use crate::gpu::ring::{RING_ACCESS, stages};
 use crate::gpu::view::View;
 use crate::gpu::workaround::{Workaround, instance_vertices};
@@ -131,7 +132,10 @@ impl FrameSlot {
         let views = u64::from(abi::VIEWS) * size_of::<abi::View>() as u64;
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER | target;
         let (bound, numbers) = (&mut self.bound, &mut self.numbers);
-        let ring_bytes = self.options.ring_bytes;
+        let ring_bytes = match self.options.residence {
+            Residence::Ring => self.options.ring_bytes,
+            Residence::Cache => 0,
+        };
         // SAFETY: this function's contract, here and below.
         unsafe {
             numbers.ring = bound.add(maker, "scratch ring", ring_bytes, storage, local)?;
@@ -404,7 +408,7 @@ impl FrameSlot {
     pub(super) fn vertices_of(&self, pass: &Pass, patches: u32) -> u32 {
         match self.options.backend {
             Backend::Geometry => patches,
-            _ => patches * pass.control_points,
+            _ => patches * control_points(pass, self.options.residence),
         }
     }
 

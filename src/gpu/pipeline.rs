@@ -4,8 +4,9 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::gpu::{Backend, DrawList, Enabled, Layout, failed, shaders};
-use crate::method::Prepared;
+use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
+use crate::gpu::{Enabled, Layout, failed, shaders};
+use crate::method::{Pass, Prepared};
 use crate::tessellation::Spacing;
 
 /// What pipelines draw into.
@@ -78,6 +79,7 @@ pub struct Pipelines {
 struct MadeFor {
     shaders: Vec<&'static str>,
     backend: Backend,
+    residence: Residence,
     spacing: Spacing,
 }
 
@@ -98,6 +100,7 @@ impl Pipelines {
         prepared: &Prepared,
         target: Target,
         backend: Backend,
+        residence: Residence,
         spacing: Spacing,
         fill: Fill,
     ) -> Result<Pipelines> {
@@ -110,14 +113,16 @@ impl Pipelines {
             made_for: Some(MadeFor {
                 shaders: prepared.passes.iter().map(|pass| pass.shader).collect(),
                 backend,
+                residence,
                 spacing,
             }),
         };
         for pass in &prepared.passes {
-            let modules = modules(pass.shader, backend, spacing, fill)?;
+            let shader = shader(pass, residence);
+            let modules = modules(shader, backend, spacing, fill)?;
             let plan = PipelinePlan {
                 backend,
-                control_points: pass.control_points,
+                control_points: control_points(pass, residence),
                 target,
                 fill,
             };
@@ -161,9 +166,13 @@ impl Pipelines {
         pass: usize,
     ) -> Result<vk::Pipeline> {
         let fits = self.made_for.as_ref().is_none_or(|own| {
-            let (backend, spacing) = (list.options().backend, list.cut().spacing);
+            let SurfaceOptions {
+                backend, residence, ..
+            } = *list.options();
+            let spacing = list.cut().spacing;
             let shaders = prepared.passes.iter().map(|pass| pass.shader);
             own.backend == backend
+                && own.residence == residence
                 && (own.spacing == spacing || backend != Backend::Tessellator)
                 && shaders.eq(own.shaders.iter().copied())
         });
@@ -192,6 +201,22 @@ impl Pipelines {
 
 /// A stage and the words of its module.
 type Module = (vk::ShaderStageFlags, &'static [u32]);
+
+/// The file that evaluates a pass's patches.
+fn shader(pass: &Pass, residence: Residence) -> &'static str {
+    match residence {
+        Residence::Ring => pass.shader,
+        Residence::Cache => pass.cached.unwrap_or(pass.shader),
+    }
+}
+
+/// The control points of a patch that go through the vertex shader.
+pub(super) fn control_points(pass: &Pass, residence: Residence) -> u32 {
+    match (residence, pass.cached) {
+        (Residence::Cache, Some(_)) => 1,
+        _ => pass.control_points,
+    }
+}
 
 /// The modules of a method's pipeline.
 fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Result<Vec<Module>> {

@@ -26,29 +26,9 @@ impl PointPipeline {
         layout: &Layout,
         cache: vk::PipelineCache,
     ) -> Result<PointPipeline> {
-        let words = shaders::spirv("points.comp")
-            .ok_or_else(|| Error::Refused("there is no shader module points.comp".into()))?;
-        let info = vk::ShaderModuleCreateInfo::default().code(words);
-        // SAFETY: the words are a valid module; the tests validate every one.
-        let module = unsafe { device.create_shader_module(&info, None) }
-            .map_err(failed("vkCreateShaderModule"))?;
-        let stage = vk::PipelineShaderStageCreateInfo::default()
-            .stage(vk::ShaderStageFlags::COMPUTE)
-            .module(module)
-            .name(c"main");
-        let info = vk::ComputePipelineCreateInfo::default()
-            .stage(stage)
-            .layout(layout.pipeline());
-        // SAFETY: everything that the info points to lives through the call; the module is not needed once the pipeline is there.
-        let made = unsafe {
-            let made = device.create_compute_pipelines(cache, &[info], None);
-            device.destroy_shader_module(module, None);
-            made
-        };
-        made.map(|pipelines| PointPipeline {
-            pipeline: pipelines[0],
-        })
-        .map_err(|(_, code)| failed("vkCreateComputePipelines")(code))
+        // SAFETY: this function's contract.
+        let pipeline = unsafe { compute_pipeline(device, layout, cache, "points.comp")? };
+        Ok(PointPipeline { pipeline })
     }
 
     /// Destroys it.
@@ -106,9 +86,45 @@ impl Pose {
     }
 }
 
+/// The pipeline of a compute shader.
+///
+/// # Errors
+/// Vulkan's own.
+///
+/// # Safety
+/// `device` is live; `layout` and `cache` (or null) are of this device.
+pub(super) unsafe fn compute_pipeline(
+    device: &ash::Device,
+    layout: &Layout,
+    cache: vk::PipelineCache,
+    name: &str,
+) -> Result<vk::Pipeline> {
+    let words = shaders::spirv(name)
+        .ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))?;
+    let info = vk::ShaderModuleCreateInfo::default().code(words);
+    // SAFETY: the words are a valid module; the tests validate every one.
+    let module = unsafe { device.create_shader_module(&info, None) }
+        .map_err(failed("vkCreateShaderModule"))?;
+    let stage = vk::PipelineShaderStageCreateInfo::default()
+        .stage(vk::ShaderStageFlags::COMPUTE)
+        .module(module)
+        .name(c"main");
+    let info = vk::ComputePipelineCreateInfo::default()
+        .stage(stage)
+        .layout(layout.pipeline());
+    // SAFETY: everything that the info points to lives through the call; the module is not needed once the pipeline is there.
+    let made = unsafe {
+        let made = device.create_compute_pipelines(cache, &[info], None);
+        device.destroy_shader_module(module, None);
+        made
+    };
+    made.map(|pipelines| pipelines[0])
+        .map_err(|(_, code)| failed("vkCreateComputePipelines")(code))
+}
+
 /// # Safety
 /// `cmd` is recording on `device`, outside of a render pass.
-unsafe fn cmd_points_barrier(
+pub(super) unsafe fn cmd_points_barrier(
     device: &ash::Device,
     cmd: vk::CommandBuffer,
     from: vk::PipelineStageFlags,

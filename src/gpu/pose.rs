@@ -6,7 +6,9 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
+use crate::frame::SurfaceOptions;
 use crate::gpu::bound::{Binding, Bound, Maker};
+use crate::gpu::cache::Cache;
 use crate::gpu::staging::{Staging, cmd_copy};
 use crate::gpu::{Layout, Tables};
 use crate::method::{Controls, Prepared};
@@ -21,10 +23,11 @@ pub struct Pose {
     positions: usize,
     points: usize,
     readers: vk::PipelineStageFlags,
+    pub(super) cache: Option<Cache>,
 }
 
 impl Pose {
-    /// Makes buffers and a descriptor set for control vertices in local units. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
+    /// Makes buffers and a descriptor set for control vertices in local units; of the options count where control points live, and the greatest level. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
     ///
     /// # Errors
     /// [`Misuse::Count`] when the number of positions is not that of the model; [`Misuse::BufferTooLarge`]; Vulkan's own.
@@ -38,6 +41,7 @@ impl Pose {
         layout: &Layout,
         tables: &Tables,
         positions: &[Vec3],
+        options: &SurfaceOptions,
     ) -> Result<Pose> {
         let prepared = tables.prepared();
         prepared.check_count("positions", positions.len())?;
@@ -48,6 +52,7 @@ impl Pose {
             positions: 0,
             points: 0,
             readers: layout.readers(),
+            cache: Cache::new(prepared, options),
         };
         let mut maker = Maker {
             device,
@@ -81,7 +86,9 @@ impl Pose {
         // SAFETY: this function's contract.
         unsafe {
             self.positions = bound.add_target(maker, "control vertices", vertices.len() as u64)?;
-            self.points = bound.add_target(maker, "points", points.len() as u64)?;
+            let cached = self.cache.as_ref().map_or(0, Cache::bytes);
+            let size = cached.max(points.len() as u64);
+            self.points = bound.add_target(maker, "points", size)?;
             self.staging.add(self.positions, vertices);
             self.staging.add(self.points, points);
             let set = vec![
@@ -116,6 +123,7 @@ impl Pose {
         self.check(tables)?;
         let prepared = tables.prepared();
         prepared.check_count("positions", positions.len())?;
+        self.positions_changed();
         let vertices: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
         let points = prepared.points.compute(&vertices);
         self.staging
@@ -127,7 +135,8 @@ impl Pose {
     /// The control vertices on the device, three floats each, in local units: a storage buffer that is also a copy's target.
     ///
     /// Whoever writes it waits for earlier frames' vertex and control shaders, and makes the writes visible to `SHADER_READ` in the
-    /// vertex, control and evaluation stages before the next draw.
+    /// vertex, control and evaluation stages before the next draw, or in the compute stage where control points are cached; and says so by
+    /// [`positions_changed`](Self::positions_changed).
     pub fn position_buffer(&self) -> vk::Buffer {
         self.bound.buffer(self.positions).raw()
     }
@@ -139,6 +148,11 @@ impl Pose {
             return Ok(());
         }
         Err(Error::Misuse(Misuse::OtherSurface))
+    }
+
+    /// The buffer of what is computed from positions.
+    pub(super) fn computed(&self) -> vk::Buffer {
+        self.bound.buffer(self.points).raw()
     }
 
     /// The bytes on the device, those aside that an upload is staged in.

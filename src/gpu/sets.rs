@@ -19,8 +19,8 @@ const UNIFORM: vk::DescriptorType = vk::DescriptorType::UNIFORM_BUFFER;
 
 /// What topology decides.
 pub(super) const TABLES: &[Slot] = &[
-    (abi::BINDING_TABLES, STORAGE, DRAWING),
-    (abi::BINDING_BASES, UNIFORM, DRAWING),
+    (abi::BINDING_TABLES, STORAGE, STAGES),
+    (abi::BINDING_BASES, UNIFORM, STAGES),
     (
         abi::BINDING_POINT_ROWS,
         STORAGE,

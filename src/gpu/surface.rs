@@ -8,7 +8,8 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, DrawList, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
-    Arrival, Counters, Drawing, FrameSlot, Layout, Pipelines, PointPipeline, Pose, Tables, View,
+    Arrival, CachePipelines, Counters, Drawing, FrameSlot, Layout, Pipelines, PointPipeline, Pose,
+    Tables, View,
 };
 use crate::mesh::Model;
 use crate::method::{DepthTags, Prepared};
@@ -58,7 +59,16 @@ impl TessellatedSurface {
                 return Err(error);
             }
         };
-        match unsafe { Pose::new(device, allocator, layout, &tables, &model.positions()) } {
+        match unsafe {
+            Pose::new(
+                device,
+                allocator,
+                layout,
+                &tables,
+                &model.positions(),
+                &options,
+            )
+        } {
             Ok(pose) => Ok(TessellatedSurface { tables, pose, slot }),
             Err(error) => {
                 unsafe {
@@ -154,6 +164,34 @@ impl TessellatedSurface {
             self.pose
                 .cmd_points(device, cmd, layout, pipeline, &self.tables)
         }
+    }
+
+    /// As [`Pose::cmd_cache`].
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn cmd_cache(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipelines: &CachePipelines,
+        list: &DrawList,
+    ) -> Result<u32> {
+        let tables = &self.tables;
+        // SAFETY: this function's contract.
+        unsafe {
+            self.pose
+                .cmd_cache(device, cmd, layout, pipelines, tables, list)
+        }
+    }
+
+    /// As [`Pose::positions_changed`].
+    pub fn positions_changed(&mut self) {
+        self.pose.positions_changed();
     }
 
     /// As [`FrameSlot::write_draws`].

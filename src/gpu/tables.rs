@@ -89,11 +89,14 @@ impl Tables {
             numbers
         };
         let mut bytes = vec![0; bases_bytes as usize];
+        let mut cached = 0;
         for (offset, pass) in (0u64..)
             .step_by(BASES_STRIDE as usize)
             .zip(&prepared.passes)
         {
-            let (words, bases) = pass.packed();
+            let (words, mut bases) = pass.packed();
+            bases.cached = cached;
+            cached += pass.cached_patches();
             let words: &[u8] = bytemuck::cast_slice(&words);
             let bases = bytemuck::bytes_of(&bases);
             bytes[offset as usize..][..bases.len()].copy_from_slice(bases);

@@ -317,7 +317,9 @@ pub struct Pass {
     pub shader: &'static str,
     /// The shape of all of them.
     pub domain: Domain,
-    /// Control points a patch, 1..=32, that go through the vertex shader.
+    /// The file that evaluates them where their control points are cached; None where they need no ring.
+    pub cached: Option<&'static str>,
+    /// Control points a patch, 1..=32, that go through the vertex shader; 1 where they are cached.
     pub control_points: u32,
     /// The patches.
     pub patches: Vec<abi::Patch>,
@@ -392,6 +394,7 @@ impl Pass {
         Pass {
             shader,
             domain,
+            cached: None,
             control_points,
             patches: Vec::new(),
             controls: Vec::new(),

@@ -131,6 +131,7 @@ fn irregular(
 ) -> Result<Pass> {
     let topology = model.topology();
     let mut pass = pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options);
+    pass.cached = Some("quadtree_cached");
     let mut catalogue = Catalogue::default();
     let mut number = |(part, ring): (Part, Ring)| {
         let plan = catalogue.number(ring.configuration.clone());

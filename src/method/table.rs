@@ -78,6 +78,11 @@ impl Pass {
         all.collect()
     }
 
+    /// How many patches have their control points in a cache, where there is one: all or none.
+    pub(crate) fn cached_patches(&self) -> u32 {
+        self.cached.map_or(0, |_| self.patches.len() as u32)
+    }
+
     /// The bytes that its tables take on a device, all in one buffer.
     pub fn table_bytes(&self) -> u64 {
         let placed = self.placed();
@@ -96,6 +101,7 @@ impl Pass {
             controls: base(1),
             texture: base(2),
             own: [3, 4, 5, 6].map(base),
+            cached: 0,
         };
         (words, bases)
     }

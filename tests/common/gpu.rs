@@ -8,8 +8,8 @@ use std::collections::HashMap;
 use ash::vk;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, PointPipeline,
-    SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
+    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines,
+    PointPipeline, Residence, SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
 };
 use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
@@ -26,7 +26,7 @@ pub const SIDE: u32 = 64;
 /// What pipelines depend on here: the shaders of the passes, who cuts, spacing, what becomes of the triangles and which are left out.
 type PipelineKey = (
     Vec<&'static str>,
-    Backend,
+    (Backend, Residence),
     Spacing,
     &'static str,
     vk::CullModeFlags,
@@ -139,7 +139,7 @@ impl Gpu {
     pub fn build(
         &self,
         prepared: &Prepared,
-        backend: Backend,
+        (backend, residence): (Backend, Residence),
         spacing: Spacing,
         fill: Fill,
         compare: vk::CompareOp,
@@ -160,6 +160,7 @@ impl Gpu {
                 prepared,
                 target,
                 backend,
+                residence,
                 spacing,
                 fill,
             )
@@ -171,7 +172,7 @@ impl Gpu {
     fn with_pipelines<T>(
         &self,
         prepared: &Prepared,
-        backend: Backend,
+        makers: (Backend, Residence),
         spacing: Spacing,
         fill: Fill,
         use_them: impl FnOnce(&Pipelines) -> T,
@@ -185,10 +186,10 @@ impl Gpu {
         };
         let mut all = self.pipelines.borrow_mut();
         let pipelines = all
-            .entry((shaders, backend, spacing, fill_name, self.cull.get()))
+            .entry((shaders, makers, spacing, fill_name, self.cull.get()))
             .or_insert_with(|| {
                 let compare = vk::CompareOp::LESS_OR_EQUAL;
-                self.build(prepared, backend, spacing, fill, compare)
+                self.build(prepared, makers, spacing, fill, compare)
             });
         use_them(pipelines)
     }
@@ -293,7 +294,26 @@ impl Loaded<'_> {
             self.surface_mut()
                 .write_draws(device.raw(), allocator, &list)?
         };
+        if self.options.residence == Residence::Cache {
+            self.cache(&list)?;
+        }
         Ok(list)
+    }
+
+    /// Fills the cache with what a list needs; how many control points are computed.
+    pub fn cache(&mut self, list: &DrawList) -> Result<u32> {
+        let (device, layout) = (&self.gpu.device, self.gpu.layout());
+        let cache = vk::PipelineCache::null();
+        let surface = self.surface.as_mut().expect("there from load to drop");
+        // SAFETY: all of one live device; the submission is waited for before the pipelines go.
+        unsafe {
+            let prepared = surface.prepared();
+            let pipelines = CachePipelines::new(device.raw(), layout, cache, prepared)?;
+            let cached =
+                device.submit(|cmd| surface.cmd_cache(device.raw(), cmd, layout, &pipelines, list));
+            pipelines.destroy(device.raw());
+            cached
+        }
     }
 
     /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
@@ -346,7 +366,7 @@ impl Loaded<'_> {
             .transpose()?;
         gpu.with_pipelines(
             self.prepared(),
-            self.options.backend,
+            (self.options.backend, self.options.residence),
             cut.spacing,
             fill,
             |pipelines| {

@@ -7,7 +7,7 @@ use ash::vk;
 use glam::Vec3;
 use hullform::conformance::backends::Drawn;
 use hullform::conformance::{Context, Settings};
-use hullform::gpu::{Backend, Cut, Fill, Shading, SurfaceOptions};
+use hullform::gpu::{Backend, Cut, Fill, Residence, Shading, SurfaceOptions};
 use hullform::mesh::{Model, Scheme, builtin};
 use hullform::method::{DepthTags, METHODS, Method, Prepared};
 use hullform::plan::PlanOptions;
@@ -32,7 +32,7 @@ fn drawable<'a>(
         let prepared = method.prepare(model, PlanOptions::default());
         (method, prepared.expect("it was checked"))
     });
-    prepared.filter(move |(_, prepared)| backend.check(prepared, 1.0).is_ok())
+    prepared.filter(move |(_, prepared)| backend.check(prepared, Residence::Ring, 1.0).is_ok())
 }
 
 fn load<'a>(
@@ -66,7 +66,11 @@ fn patterns_are_n_times_4_to_the_depth_triangles() {
                 let refined = patches
                     .clone()
                     .any(|patch| patch.flags & abi::PATCH_REFINED != 0);
-                if backend.check(&prepared, cut.level).is_err() || refined && depth == 0 {
+                if backend
+                    .check(&prepared, Residence::Ring, cut.level)
+                    .is_err()
+                    || refined && depth == 0
+                {
                     continue;
                 }
                 let mut loaded = load(&gpu, &model, prepared, backend, cut);

@@ -7,6 +7,7 @@
 mod common;
 
 mod backends;
+mod cache;
 mod edges;
 mod hexagon;
 mod misuse;

@@ -26,7 +26,15 @@ fn check(gpu: &Gpu, method: &str, backend: Backend, spacing: Spacing) {
         ..SurfaceOptions::default()
     };
     let workarounds = &gpu.device.info().workarounds;
-    let build = |fill, compare| gpu.build(&prepared, backend, spacing, fill, compare);
+    let build = |fill, compare| {
+        gpu.build(
+            &prepared,
+            (backend, options.residence),
+            spacing,
+            fill,
+            compare,
+        )
+    };
     let plain = build(Fill::Solid(Shading::Patch), vk::CompareOp::LESS_OR_EQUAL);
     let equal = build(Fill::Solid(Shading::Patch), vk::CompareOp::EQUAL);
     let depth = build(Fill::Depth, vk::CompareOp::LESS_OR_EQUAL);

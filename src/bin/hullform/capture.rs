@@ -29,9 +29,15 @@ pub fn capture(
     camera: Option<Camera>,
     global: &Global,
 ) -> Result<Surface> {
-    let Cutting { cut, backend, .. } = cutting;
+    let Cutting {
+        cut,
+        backend,
+        residence,
+        ..
+    } = cutting;
     let options = SurfaceOptions {
         backend,
+        residence,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
         capture_vertices: CAPTURED,

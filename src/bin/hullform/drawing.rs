@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use ash::vk;
 use hullform::gpu::{
-    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, PointPipeline, Slots,
-    SurfaceOptions, Target, TessellatedSurface, View,
+    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines,
+    PointPipeline, Residence, Slots, SurfaceOptions, Target, TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
@@ -25,6 +25,8 @@ pub struct Drawing<'a> {
     gpu: &'a Gpu,
     layout: Option<Layout>,
     surface: Option<TessellatedSurface>,
+    /// Where control points are cached.
+    cache_pipelines: Option<CachePipelines>,
     /// Seconds to make plans.
     pub plan_seconds: f64,
     /// Seconds to bring everything to the device.
@@ -77,6 +79,7 @@ impl<'a> Drawing<'a> {
             gpu,
             layout: None,
             surface: None,
+            cache_pipelines: None,
             plan_seconds: 0.0,
             upload_seconds: 0.0,
         };
@@ -97,7 +100,13 @@ impl<'a> Drawing<'a> {
                 options,
             )?
         };
-        drawing.surface = Some(surface);
+        let prepared = drawing.surface.insert(surface).prepared();
+        if options.residence == Residence::Cache {
+            let cache = vk::PipelineCache::null();
+            // SAFETY: as above.
+            let pipelines = unsafe { CachePipelines::new(device, layout, cache, prepared)? };
+            drawing.cache_pipelines = Some(pipelines);
+        }
         Ok(drawing)
     }
 
@@ -162,11 +171,37 @@ impl<'a> Drawing<'a> {
         cutting.adaptive.map(tags).transpose()
     }
 
-    /// What is drawn at a cut, with what the host decides about patches on the device.
+    /// What is drawn at a cut, with what the host decides about patches on the device, and control points in their cache.
     pub fn draw_list(&mut self, cut: Cut, tags: Option<&DepthTags>) -> Result<DrawList> {
         let list = self.surface().draw_list(cut, tags)?;
         self.bring(&list)?;
+        let device = &self.gpu.device;
+        if self.cache_pipelines.is_some() {
+            // SAFETY: recording on the device that made everything, outside of a render pass.
+            device.submit(|cmd| unsafe { self.cmd_cache(cmd, &list) })?;
+        }
         Ok(list)
+    }
+
+    /// Says that what is cached is to be computed again.
+    pub fn positions_changed(&mut self) {
+        self.surface_mut().positions_changed();
+    }
+
+    /// Records the computation of the control points that a list needs and no cache has, if they are cached; how many these are.
+    ///
+    /// # Safety
+    /// As [`TessellatedSurface::cmd_cache`].
+    pub unsafe fn cmd_cache(&mut self, cmd: vk::CommandBuffer, list: &DrawList) -> Result<u32> {
+        let (Some(layout), Some(surface)) = (&self.layout, &mut self.surface) else {
+            return Ok(0);
+        };
+        let device = self.gpu.device.raw();
+        let pipelines = self.cache_pipelines.as_ref();
+        pipelines.map_or(Ok(0), |pipelines| {
+            // SAFETY: this function's contract.
+            unsafe { surface.cmd_cache(device, cmd, layout, pipelines, list) }
+        })
     }
 
     /// Brings to the device what the host decided about patches, unless it was the last to be brought.
@@ -200,6 +235,7 @@ impl<'a> Drawing<'a> {
                 self.surface().prepared(),
                 target,
                 self.surface().options().backend,
+                self.surface().options().residence,
                 spacing,
                 fill,
             )?
@@ -297,6 +333,9 @@ impl Drop for Drawing<'_> {
         unsafe {
             if let Some(surface) = self.surface.take() {
                 surface.destroy(device, allocator);
+            }
+            if let Some(pipelines) = self.cache_pipelines.take() {
+                pipelines.destroy(device);
             }
             if let Some(layout) = self.layout.take() {
                 layout.destroy(device);

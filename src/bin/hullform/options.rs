@@ -189,6 +189,8 @@ pub struct Cutting {
     pub cut: hullform::gpu::Cut,
     /// By whom.
     pub backend: hullform::gpu::Backend,
+    /// Where control points live.
+    pub residence: hullform::gpu::Residence,
     /// What depth tags go by.
     pub adaptive: Option<Adaptive>,
 }
@@ -300,6 +302,27 @@ pub struct Steps {
     /// Who cuts patches into triangles; all but the tessellator raise levels to powers of two
     #[arg(long, value_name = "WHO", default_value = "tessellator")]
     pub backend: Backend,
+    /// Where control points live of patches that need more than their vertices
+    #[arg(long, value_name = "WHERE", default_value = "ring")]
+    pub residence: Residence,
+}
+
+/// Where control points live.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Residence {
+    /// In the scratch ring: control shaders compute them as they go
+    Ring,
+    /// In a cache: a compute pass computes each once
+    Cache,
+}
+
+impl From<Residence> for hullform::gpu::Residence {
+    fn from(residence: Residence) -> Self {
+        match residence {
+            Residence::Ring => hullform::gpu::Residence::Ring,
+            Residence::Cache => hullform::gpu::Residence::Cache,
+        }
+    }
 }
 
 /// Who cuts patches into triangles.
@@ -366,6 +389,7 @@ impl Steps {
                 spacing: self.spacing.into(),
             },
             backend: self.backend.into(),
+            residence: self.residence.into(),
             adaptive: None,
         }
     }

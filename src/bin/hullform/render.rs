@@ -256,9 +256,15 @@ fn draw_with(
     (view, tags): &Seen,
     slots: Slots,
 ) -> Result<Value> {
-    let Cutting { cut, backend, .. } = scene.cutting;
+    let Cutting {
+        cut,
+        backend,
+        residence,
+        ..
+    } = scene.cutting;
     let options = SurfaceOptions {
         backend,
+        residence,
         ring_bytes: scene.ring_bytes,
         slots,
         count_vertices: true,
@@ -359,6 +365,7 @@ fn statistics(
         "method": drawing.surface().prepared().method,
         "level": scene.cutting.cut.level,
         "backend": scene.cutting.backend.name(),
+        "residence": scene.cutting.residence.name(),
         "spacing": scene.cutting.cut.spacing.name(),
         "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },
         "plans": plans.plans,

@@ -7,9 +7,9 @@ mod subject;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hullform::gpu::Backend;
+use hullform::gpu::{Backend, Residence};
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Method, Reproduces, method};
+use hullform::method::{METHODS, Method, Prepared, Reproduces, method};
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 
@@ -57,6 +57,17 @@ pub struct Arguments {
         default_value = "tessellator"
     )]
     backend: Vec<options::Backend>,
+    /// Where control points live, one or both; methods without a ring are measured once
+    #[arg(
+        long,
+        value_name = "A,B",
+        value_delimiter = ',',
+        default_value = "ring"
+    )]
+    residence: Vec<options::Residence>,
+    /// Nothing moves from frame to frame: what is cached is computed once. Without it caches are filled in each frame
+    #[arg(long = "static")]
+    is_static: bool,
     /// How many times a frame draws the surface
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
     passes: u32,
@@ -136,14 +147,27 @@ fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Re
             by_default: false,
             replaceable: false,
         };
-        for &backend in &arguments.backend {
+        let first = arguments.residence.first().copied();
+        let ways = arguments.backend.iter().flat_map(|&backend| {
+            let residences = arguments.residence.iter();
+            residences.map(move |&residence| (Backend::from(backend), residence))
+        });
+        for (backend, own) in ways {
+            let residence = Residence::from(own);
             let prepared = Drawing::prepare(&model, chosen).and_then(|prepared| {
-                Backend::from(backend).check(&prepared, greatest)?;
+                backend.check(&prepared, residence, greatest)?;
                 Ok(prepared)
             });
+            let has_cache = |prepared: &Prepared| {
+                let mut passes = prepared.passes.iter();
+                passes.any(|pass| pass.cached.is_some())
+            };
+            if Some(own) != first && prepared.as_ref().is_ok_and(|p| !has_cache(p)) {
+                continue;
+            }
             match prepared {
                 Ok(prepared) => {
-                    let drawn = (method.name, backend.into());
+                    let drawn = (method.name, backend, residence);
                     subjects.push(Subject::new(
                         gpu, path, &model, prepared, drawn, arguments, global,
                     )?);

@@ -25,7 +25,10 @@ fn lines(rows: &[Row]) -> Vec<Line> {
         let Some(seconds) = row.seconds().filter(|&seconds| seconds > 0.0) else {
             continue;
         };
-        let name = format!("{} {} {}", row.model, row.method, row.backend);
+        let name = format!(
+            "{} {} {} {}",
+            row.model, row.method, row.backend, row.residence
+        );
         let point = (f64::from(row.level), 1e3 * seconds);
         match lines.iter_mut().find(|(other, _)| *other == name) {
             Some((_, points)) => points.push(point),

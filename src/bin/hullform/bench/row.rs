@@ -13,7 +13,7 @@ pub struct Work {
     pub patches: u64,
     /// Runs of the evaluating shader.
     pub evaluations: u64,
-    /// Control points that control shaders computed.
+    /// Control points that were computed: by control shaders, or into a cache.
     pub points: u64,
     /// Products of a weight and a point in these.
     pub products: u64,
@@ -30,6 +30,8 @@ pub struct Row {
     pub method: &'static str,
     pub level: f32,
     pub backend: &'static str,
+    pub residence: &'static str,
+    pub is_static: bool,
     pub passes: u32,
     /// Seconds of all threads of the process for each frame; empty where the system does not tell.
     pub cpu: Vec<f64>,
@@ -65,17 +67,17 @@ impl Row {
         device.or(least(&self.cpu)).or(least(&self.gpu))
     }
 
-    /// As the files have it. Control points live in the ring, of one instance, and every frame computes them.
+    /// As the files have it. Of one instance.
     pub fn json(&self) -> Value {
         json!({
             "model": self.model,
             "method": self.method,
             "level": self.level,
-            "residence": "ring",
+            "residence": self.residence,
             "backend": self.backend,
             "instances": 1,
             "passes": self.passes,
-            "static": false,
+            "static": self.is_static,
             "cpu_ms": milliseconds(least(&self.cpu)),
             "cpu_ms_median": milliseconds(median(&self.cpu)),
             "gpu_ms": milliseconds(least(&self.gpu)),
@@ -151,11 +153,12 @@ pub fn as_text(title: &str, rows: &[Row]) -> String {
     let mut lines = vec![
         title.to_string(),
         format!(
-            "{:16} {:10} {:>5} {:12} {:>9} {:>9} {:>9} {:>7} {:>9} {:>11} {:>10} {:>12} {:>5} {:>8}",
+            "{:16} {:10} {:>5} {:12} {:9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>11} {:>10} {:>12} {:>5} {:>8}",
             "model",
             "method",
             "level",
             "backend",
+            "residence",
             "cpu ms",
             "median",
             "gpu ms",
@@ -171,11 +174,12 @@ pub fn as_text(title: &str, rows: &[Row]) -> String {
     let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
     lines.extend(rows.iter().map(|row| {
         format!(
-            "{:16} {:10} {:>5} {:12} {:>9} {:>9} {:>9} {:>7} {:>9} {:>11} {:>10} {:>12} {:>5} {:>8}",
+            "{:16} {:10} {:>5} {:12} {:9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>11} {:>10} {:>12} {:>5} {:>8}",
             row.model,
             row.method,
             row.level,
             row.backend,
+            row.residence,
             number(milliseconds(least(&row.cpu))),
             number(milliseconds(median(&row.cpu))),
             number(milliseconds(least(&row.gpu))),
@@ -201,6 +205,8 @@ mod tests {
             method,
             level: 8.0,
             backend: "tessellator",
+            residence: "ring",
+            is_static: false,
             passes: 1,
             cpu: cpu.to_vec(),
             gpu: gpu.to_vec(),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hullform::gpu::{Backend, Cut, DrawList, Fill, SurfaceOptions};
+use hullform::gpu::{Backend, Cut, DrawList, Fill, Residence, SurfaceOptions};
 use hullform::host::{OffscreenTarget, StatisticsQuery, TimestampQuery};
 use hullform::mesh::Model;
 use hullform::method::Prepared;
@@ -21,6 +21,8 @@ pub struct Subject<'a> {
     model: String,
     method: &'static str,
     backend: Backend,
+    residence: Residence,
+    is_static: bool,
     passes: u32,
     ring_bytes: u64,
     device_bytes: u64,
@@ -48,7 +50,7 @@ impl<'a> Subject<'a> {
         path: &Path,
         model: &Model,
         prepared: Prepared,
-        (method, backend): (&'static str, Backend),
+        (method, backend, residence): (&'static str, Backend, Residence),
         arguments: &Arguments,
         global: &Global,
     ) -> Result<Subject<'a>> {
@@ -57,6 +59,7 @@ impl<'a> Subject<'a> {
             && backend == Backend::Tessellator;
         let options = SurfaceOptions {
             backend,
+            residence,
             count_vertices: !device_counts,
             ring_bytes: global.ring_bytes,
             slots: Drawing::slots(global.slots),
@@ -87,8 +90,13 @@ impl<'a> Subject<'a> {
             model: model_name(path),
             method,
             backend,
+            residence,
+            is_static: arguments.is_static,
             passes: arguments.passes,
-            ring_bytes: global.ring_bytes,
+            ring_bytes: match residence {
+                Residence::Ring => global.ring_bytes,
+                Residence::Cache => 0,
+            },
             device_bytes,
             pipelines: drawing.pipelines(&target, spacing, Fill::Discard)?,
             drawing,
@@ -104,9 +112,9 @@ impl<'a> Subject<'a> {
         for number in 0..self.levels.len() {
             self.drawing.bring(&self.levels[number].list)?;
             let before = cpu_seconds();
-            self.submit(number)?;
+            let cached = self.submit(number)?;
             let after = cpu_seconds();
-            let work = self.work(number)?;
+            let work = self.work(number, cached)?;
             let level = &mut self.levels[number];
             if level.work.replace(work).is_none() {
                 continue;
@@ -120,7 +128,8 @@ impl<'a> Subject<'a> {
         Ok(())
     }
 
-    fn submit(&self, number: usize) -> Result<()> {
+    /// Draws a frame; how many control points it brought into the cache.
+    fn submit(&mut self, number: usize) -> Result<u32> {
         let list = &self.levels[number].list;
         let query = self.statistics.as_ref();
         let device = self.gpu.device.raw();
@@ -129,6 +138,10 @@ impl<'a> Subject<'a> {
             if let Some(clock) = &self.clock {
                 clock.cmd_begin(cmd);
             }
+            if !self.is_static {
+                self.drawing.positions_changed();
+            }
+            let cached = self.drawing.cmd_cache(cmd, list)?;
             let surface = self.drawing.surface();
             surface.cmd_prepare(device, cmd, &[Drawing::nowhere()])?;
             if let Some(query) = query {
@@ -151,12 +164,12 @@ impl<'a> Subject<'a> {
             if let Some(clock) = &self.clock {
                 clock.cmd_end(cmd);
             }
-            drawn
+            drawn.map(|()| cached)
         })
     }
 
     /// What the frame just drawn did. One of which something is missing would be a fast one, and is refused.
-    fn work(&self, number: usize) -> Result<Work> {
+    fn work(&self, number: usize, cached: u32) -> Result<Work> {
         let list = &self.levels[number].list;
         let batches = || {
             (0..self.passes)
@@ -192,8 +205,12 @@ impl<'a> Subject<'a> {
         Ok(Work {
             patches: batches().map(|batch| batch.patches().len() as u64).sum(),
             evaluations,
-            points: u64::from(counters.points),
-            products: batches().map(products).sum(),
+            points: u64::from(counters.points) + u64::from(cached),
+            products: match self.residence {
+                Residence::Ring => batches().map(products).sum(),
+                Residence::Cache if cached > 0 => list.batches().map(products).sum(),
+                Residence::Cache => 0,
+            },
             draws: batches().map(|batch| batch.draws().len() as u64).sum(),
             barriers: batches().filter(|batch| batch.waits()).count() as u64,
         })
@@ -206,6 +223,8 @@ impl<'a> Subject<'a> {
             method: self.method,
             level: level.list.cut().level,
             backend: self.backend.name(),
+            residence: self.residence.name(),
+            is_static: self.is_static,
             passes: self.passes,
             cpu: level.cpu.clone(),
             gpu: level.gpu.clone(),

@@ -183,7 +183,9 @@ fn sort_out(
     for &chosen in asked {
         match progress::during("planning", |_| {
             let (prepared, _) = chosen.prepare(model)?;
-            cutting.backend.check(&prepared, cutting.cut.level)?;
+            cutting
+                .backend
+                .check(&prepared, cutting.residence, cutting.cut.level)?;
             Ok::<_, Error>(prepared)
         }) {
             Ok(prepared) => able.push((chosen, patches(&prepared))),

@@ -4,7 +4,7 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::Result;
-use crate::frame::{Batch, Draw};
+use crate::frame::{Batch, Draw, DrawList};
 use crate::gpu::ring::cmd_ring_barrier;
 use crate::gpu::sets::STAGES;
 use crate::gpu::{FrameSlot, Layout, Pipelines, Pose, Tables};
@@ -75,6 +75,12 @@ impl Drawing<'_> {
             unsafe { self.cmd_draw_one(device, cmd, layout, &mut frame, batch, draw) };
         }
         Ok(())
+    }
+
+    /// Whether the pose has all control points that a list is drawn with, so that [`cmd_cache`](Pose::cmd_cache) would record nothing; true where the
+    /// ring has them.
+    pub fn is_cached(&self, list: &DrawList) -> bool {
+        self.pose.check_cached(self.tables, list).is_ok()
     }
 
     /// # Safety

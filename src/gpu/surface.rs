@@ -189,6 +189,11 @@ impl TessellatedSurface {
         }
     }
 
+    /// As [`Drawing::is_cached`].
+    pub fn is_cached(&self, list: &DrawList) -> bool {
+        self.drawing().is_cached(list)
+    }
+
     /// As [`Pose::positions_changed`].
     pub fn positions_changed(&mut self) {
         self.pose.positions_changed();

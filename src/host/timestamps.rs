@@ -61,7 +61,7 @@ impl TimestampQuery {
     /// Records the end: when all that was recorded before has been done.
     ///
     /// # Safety
-    /// After [`TimestampQuery::cmd_begin`], in the same command buffer.
+    /// After [`TimestampQuery::cmd_begin`], in the same command buffer or one that is submitted later to the same queue.
     pub unsafe fn cmd_end(&self, cmd: vk::CommandBuffer) {
         // SAFETY: this function's contract.
         unsafe { self.cmd_write(cmd, 1) };

@@ -133,15 +133,31 @@ impl<'a> Subject<'a> {
         let list = &self.levels[number].list;
         let query = self.statistics.as_ref();
         let device = self.gpu.device.raw();
+        if !self.is_static {
+            self.drawing.positions_changed();
+        }
+        let begin = |cmd| {
+            if let Some(clock) = &self.clock {
+                // SAFETY: recording on the query's device, outside of a render pass.
+                unsafe { clock.cmd_begin(cmd) };
+            }
+        };
+        // In a submission of its own: where a dispatch stands before a query of pipeline statistics in a command buffer, llvmpipe crashes (Mesa
+        // 22.3.6).
+        let mut cached = 0;
+        let fills = !self.drawing.surface().is_cached(list);
+        if fills {
+            // SAFETY: recording on the device that made everything, outside of a render pass.
+            cached = self.gpu.device.submit(|cmd| unsafe {
+                begin(cmd);
+                self.drawing.cmd_cache(cmd, list)
+            })?;
+        }
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
         self.gpu.device.submit(|cmd| unsafe {
-            if let Some(clock) = &self.clock {
-                clock.cmd_begin(cmd);
+            if !fills {
+                begin(cmd);
             }
-            if !self.is_static {
-                self.drawing.positions_changed();
-            }
-            let cached = self.drawing.cmd_cache(cmd, list)?;
             let surface = self.drawing.surface();
             surface.cmd_prepare(device, cmd, &[Drawing::nowhere()])?;
             if let Some(query) = query {

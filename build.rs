@@ -1,6 +1,6 @@
 //! Turns `glsl/` into the SPIR-V modules that the crate embeds, and lists them in `shaders.rs` for `src/gpu/shaders.rs`.
 //!
-//! Every `glsl/method/NAME.glsl` makes seven modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
+//! Every `glsl/method/NAME.glsl` makes up to eight modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
 //! `NAME.fractional-even.tese`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of
 //! their line `#include "method"`. Spacing is an execution mode, hence a module of its own. Methods that define `SCRATCH_RING` need control
 //! shaders, and have neither of the modules that do without; they have `NAME.comp`, which fills a cache. Every other stage file in `glsl/` is a

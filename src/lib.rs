@@ -77,7 +77,7 @@
 //! The library borrows device and allocator, records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
 //! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
 //!
-//! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 16 storage
+//! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 8 storage
 //! buffers a stage; `gpu::Backend::Geometry` also needs `geometryShader`.
 //! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on. With `vulkanMemoryModel` also switch on `vulkanMemoryModelDeviceScope`:
 //! our shaders' atomic operations have device scope.
@@ -89,21 +89,27 @@
 //! is true, end rendering, record `gpu::ring::cmd_ring_barrier` and your attachments' barrier, and begin again with `LOAD`. With a ring
 //! that holds the whole model nothing waits, but for the few patches that are over where a driver bounds the vertices of an instance.
 //!
-//! **Frames in flight** may share a surface on one queue: `cmd_prepare` waits for the shaders of earlier frames. Frames that shall overlap
-//! need a surface each. What the host writes (positions, slots, levels, patterns) and reads (counters, captures) is not doubled: see there.
+//! **Lifetimes.** `gpu::TessellatedSurface` is three things in one, which an engine with more than one instance or frame keeps by themselves:
+//! `gpu::Tables` live as long as the topology and are shared by all; a `gpu::Pose` belongs to an instance that deforms, and rigid ones share it; a
+//! `gpu::FrameSlot` belongs to a frame in flight, so that what a frame writes waits for no other. A `gpu::Drawing` of the three is drawn. Each has a
+//! descriptor set of its own. The places of instances, and the views, are the slot's `gpu::View`s: `cmd_prepare` takes them, a draw names one.
+//!
+//! **Residence.** Where control points live is `gpu::SurfaceOptions::residence`: in the `Ring` control shaders compute them as they go, for a single pass.
+//! In the `Cache` of a pose `gpu::Pose::cmd_cache` computes each once, and nothing while nothing moves: then no draw has a barrier, dynamic rendering
+//! needs no care, any number of passes and views draw the same points, and every back-end draws every patch. The bits are the same.
 //!
 //! **Draw lists.** `gpu::TessellatedSurface::draw_list` decides what a frame draws: a [`frame::DrawList`], a plain value that is kept as long as
 //! the level stays. All patches have the level of its [`frame::Cut`], unless it is made with [`method::DepthTags`]: a depth for each control
 //! vertex, by distance, picture or curvature, or of your own. What the host decides about single patches is brought to the device by
-//! `gpu::TessellatedSurface::write_draws`, between frames, when nothing submitted uses the surface.
+//! `gpu::TessellatedSurface::write_draws`, when nothing submitted uses the slot.
 //!
 //! **Misuse** is refused with [`Error::Misuse`], before anything is recorded or written: levels that are no levels, another mesh's tables,
 //! another surface's draw list, pipelines for something else, buffers that shaders cannot see, a device without the features.
 //!
 //! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
 //! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with
-//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Set 0 is the library's, and so are all push
-//! constants: their one range is `gpu::Layout::push_constant_range`, which shows how to make a layout with further sets.
+//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Sets 0 to 2 are the library's, and so are all push
+//! constants: their one range, of 32 bytes, is `gpu::Layout::push_constant_range`, which shows how to make a layout with further sets.
 //!
 //! **Skinning and morphing.** Positions are read in one function, `control_vertex` in `glsl/lib/control_vertex.glsl`. Put your own in its
 //! place: plans do not depend on positions. Or write deformed positions into `gpu::TessellatedSurface::position_buffer` with a compute

@@ -218,7 +218,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 28] = [
+const NAMED: [(&str, &str, &str); 29] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -226,6 +226,7 @@ const NAMED: [(&str, &str, &str); 28] = [
     ("src/conformance/robustness.rs", "quadtree", RING),
     ("tests/common/surfaces.rs", "quadtree", PLANS),
     ("tests/plans.rs", "quadtree", PLANS),
+    ("tests/gpu/cache.rs", "quadtree", RING),
     ("tests/gpu/ring.rs", "quadtree", RING),
     ("tests/gpu/scale.rs", "quadtree", RING),
     ("tests/gpu/work.rs", "quadtree", RING),

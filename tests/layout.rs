@@ -43,7 +43,8 @@ fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static s
             abi::BINDING_BASES => Some("Bases"),
             abi::BINDING_VIEWS => Some("View"),
             abi::BINDING_CAPTURE => Some("Captured"),
-            abi::BINDING_POINTS => Some("Point"),
+            // Or the points of a cache, which are no structs.
+            abi::BINDING_POINTS => inner(shape).1.map(|_| "Point"),
             abi::BINDING_POINT_ROWS => Some("PointRow"),
             abi::BINDING_POINT_TERMS => Some("PointTerm"),
             abi::BINDING_DRAWS => Some("PatchDraw"),

@@ -12,8 +12,8 @@ use crate::conformance::Context;
 use crate::conformance::context::Seen;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Backend, Batch, Counters, Cut, DrawList, Fill, Layout, Pipelines, Residence, Shading,
-    SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
+    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines, Residence,
+    Shading, SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
@@ -30,7 +30,10 @@ pub const SIDE: u32 = 256;
 const MOST_CAPTURED: u32 = 1_000_000;
 
 /// What pipelines depend on: the shaders of the passes, who cuts, spacing, and what becomes of the triangles.
-type PipelineKey = (Vec<&'static str>, Backend, Spacing, bool, vk::CullModeFlags);
+type PipelineKey = (Vec<&'static str>, Makers, Spacing, bool, vk::CullModeFlags);
+
+/// Who cuts patches, and where their control points live.
+type Makers = (Backend, Residence);
 
 /// A device with what surfaces share, kept from case to case: pipelines take long to build.
 pub struct Bench {
@@ -106,18 +109,18 @@ impl Bench {
     fn with_pipelines<T>(
         &self,
         prepared: &Prepared,
-        backend: Backend,
+        makers: Makers,
         spacing: Spacing,
         fill: Fill,
         cull: vk::CullModeFlags,
         use_them: impl FnOnce(&Pipelines) -> Result<T>,
     ) -> Result<T> {
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, backend, spacing, fill == Fill::Discard, cull);
+        let key = (shaders, makers, spacing, fill == Fill::Discard, cull);
         let mut all = self.pipelines.borrow_mut();
         if !all.contains_key(&key) {
             let cache = vk::PipelineCache::null();
-            let built = self.build(prepared, backend, spacing, fill, cull, cache)?;
+            let built = self.build(prepared, makers, spacing, fill, cull, cache)?;
             all.insert(key.clone(), built);
         }
         use_them(&all[&key])
@@ -127,7 +130,7 @@ impl Bench {
     fn build(
         &self,
         prepared: &Prepared,
-        backend: Backend,
+        makers: Makers,
         spacing: Spacing,
         fill: Fill,
         cull: vk::CullModeFlags,
@@ -140,18 +143,11 @@ impl Bench {
             compare: vk::CompareOp::LESS_OR_EQUAL,
         };
         let (device, layout) = (self.device.raw(), self.layout());
+        let (backend, residence) = makers;
         // SAFETY: all of one live device.
         unsafe {
             Pipelines::new(
-                device,
-                layout,
-                cache,
-                prepared,
-                target,
-                backend,
-                Residence::Ring,
-                spacing,
-                fill,
+                device, layout, cache, prepared, target, backend, residence, spacing, fill,
             )
         }
     }
@@ -170,9 +166,9 @@ impl Bench {
         // SAFETY: the device is live; the data are empty or what this device gave.
         let cache = unsafe { device.create_pipeline_cache(&info, None) }
             .map_err(crate::gpu::failed("vkCreatePipelineCache"))?;
-        let backend = Backend::Tessellator;
+        let makers = (Backend::Tessellator, Residence::Ring);
         let cull = vk::CullModeFlags::NONE;
-        let built = self.build(prepared, backend, spacing, fill, cull, cache);
+        let built = self.build(prepared, makers, spacing, fill, cull, cache);
         // SAFETY: the cache is ours, and the pipelines do not need it any more.
         let held = unsafe {
             let held = device.get_pipeline_cache_data(cache);
@@ -180,7 +176,7 @@ impl Bench {
             held.map_err(crate::gpu::failed("vkGetPipelineCacheData"))
         };
         let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, backend, spacing, fill == Fill::Discard, cull);
+        let key = (shaders, makers, spacing, fill == Fill::Discard, cull);
         self.pipelines.borrow_mut().insert(key, built?);
         held
     }
@@ -291,7 +287,29 @@ impl Loaded<'_> {
             self.surface_mut()
                 .write_draws(device.raw(), allocator, &list)?
         };
+        if self.options.residence == Residence::Cache {
+            self.cache(&list)?;
+        }
         Ok(list)
+    }
+
+    /// Fills the cache with the control points that a list needs, in a submission of its own.
+    fn cache(&mut self, list: &DrawList) -> Result<()> {
+        let (device, layout) = (&self.bench.device, self.bench.layout());
+        let cache = vk::PipelineCache::null();
+        let prepared = self.prepared();
+        // SAFETY: all of one live device.
+        let pipelines = unsafe { CachePipelines::new(device.raw(), layout, cache, prepared)? };
+        let surface = self.surface_mut();
+        // SAFETY: recording on the device that made everything, outside of a render pass.
+        let filled = device.submit(|cmd| unsafe {
+            surface.cmd_cache(device.raw(), cmd, layout, &pipelines, list)
+        });
+        if !device.is_hung() {
+            // SAFETY: the submission has been waited for.
+            unsafe { pipelines.destroy(device.raw()) };
+        }
+        filled.map(|_| ())
     }
 
     /// Draws everything at a cut, a pass after the other: what is captured does not tell which pass it belongs to.
@@ -343,7 +361,7 @@ impl Loaded<'_> {
         let (raw, prepared) = (device.raw(), self.prepared());
         self.bench.with_pipelines(
             prepared,
-            self.options.backend,
+            (self.options.backend, self.options.residence),
             cut.spacing,
             fill,
             self.cull,
@@ -424,7 +442,7 @@ impl Loaded<'_> {
         let (raw, prepared) = (device.raw(), self.prepared());
         self.bench.with_pipelines(
             prepared,
-            self.options.backend,
+            (self.options.backend, self.options.residence),
             cut.spacing,
             Fill::Solid(Shading::Patch),
             self.cull,

@@ -46,7 +46,7 @@ impl Cut {
     }
 
     /// The cut at which a cache has the control points of a plan level.
-    pub(crate) fn of_plan_level(level: u32) -> Cut {
+    pub fn of_plan_level(level: u32) -> Cut {
         Cut {
             level: (1u32 << level.min(6)) as f32,
             spacing: Spacing::Equal,
@@ -54,7 +54,7 @@ impl Cut {
     }
 
     /// The least plan level at which a cache has all control points that are drawn at this cut, or, where depth tags lower levels, at less.
-    pub(crate) fn cached_level(&self, prepared: &Prepared) -> u32 {
+    pub fn cached_level(&self, prepared: &Prepared) -> u32 {
         let passes = prepared.passes.iter();
         let cached = passes.filter(|pass| pass.cached.is_some());
         let levels = cached.map(|pass| self.cached_level_of(pass));

@@ -146,8 +146,8 @@ impl Pipelines {
     /// # Safety
     /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
     /// surface's backend draws. Its layout is
-    /// compatible with [`Layout::pipeline`] for set 0 and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
-    /// `abi::Frame` and set 0 as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
+    /// compatible with [`Layout::pipeline`] for sets 0 to 2 and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
+    /// `abi::Frame` and these sets as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
     pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>) -> Pipelines {
         Pipelines {
             pipelines,

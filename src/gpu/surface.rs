@@ -48,29 +48,25 @@ impl TessellatedSurface {
         if !prepared.is_of(model) {
             return Err(Error::Misuse(Misuse::OtherMesh));
         }
-        // SAFETY: this function's contract, here and below; of what was made before a failure nothing has been recorded.
+        // SAFETY: this function's contract.
         let tables = unsafe { Tables::new(device, allocator, layout, prepared)? };
+        // SAFETY: as above; the tables were just made.
         let slot =
             unsafe { FrameSlot::new(device, allocator, layout, &tables, workarounds, options) };
         let slot = match slot {
             Ok(slot) => slot,
             Err(error) => {
+                // SAFETY: nothing of them has been recorded.
                 unsafe { tables.destroy(device, allocator) };
                 return Err(error);
             }
         };
-        match unsafe {
-            Pose::new(
-                device,
-                allocator,
-                layout,
-                &tables,
-                &model.positions(),
-                &options,
-            )
-        } {
+        let positions = model.positions();
+        // SAFETY: as above.
+        match unsafe { Pose::new(device, allocator, layout, &tables, &positions, &options) } {
             Ok(pose) => Ok(TessellatedSurface { tables, pose, slot }),
             Err(error) => {
+                // SAFETY: nothing of them has been recorded.
                 unsafe {
                     slot.destroy(device, allocator);
                     tables.destroy(device, allocator);

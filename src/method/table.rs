@@ -79,7 +79,7 @@ impl Pass {
     }
 
     /// How many patches have their control points in a cache, where there is one: all or none.
-    pub(crate) fn cached_patches(&self) -> u32 {
+    pub fn cached_patches(&self) -> u32 {
         self.cached.map_or(0, |_| self.patches.len() as u32)
     }
 
@@ -90,7 +90,7 @@ impl Pass {
     }
 
     /// The words of that buffer, and where its tables begin there.
-    pub(crate) fn packed(&self) -> (Vec<u32>, abi::Bases) {
+    pub fn packed(&self) -> (Vec<u32>, abi::Bases) {
         let placed = self.placed();
         let mut words = vec![0; self.table_bytes() as usize / 4];
         for table in &placed {

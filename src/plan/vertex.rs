@@ -94,7 +94,7 @@ impl VertexPlan {
                         spare: spare.is_some(),
                     };
                     if !cusp {
-                        push_tangents(&mut rows, &limit, &level.rows);
+                        push_tangents(&mut rows, limit, &level.rows);
                     }
                     for mask in spare.iter().flatten() {
                         rows.push(mask, &whole.rows);

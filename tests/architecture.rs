@@ -218,7 +218,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 29] = [
+const NAMED: [(&str, &str, &str); 30] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -227,6 +227,7 @@ const NAMED: [(&str, &str, &str); 29] = [
     ("tests/common/surfaces.rs", "quadtree", PLANS),
     ("tests/plans.rs", "quadtree", PLANS),
     ("tests/gpu/cache.rs", "quadtree", RING),
+    ("tests/gpu/lifetimes.rs", "quadtree", RING),
     ("tests/gpu/ring.rs", "quadtree", RING),
     ("tests/gpu/scale.rs", "quadtree", RING),
     ("tests/gpu/work.rs", "quadtree", RING),

@@ -1,6 +1,7 @@
 //! Our surfaces on the device, and every vertex that comes of them.
 
 mod cuts;
+mod pipelines;
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -12,28 +13,22 @@ use crate::conformance::Context;
 use crate::conformance::context::Seen;
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines, Residence,
-    Shading, SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
+    Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines, Residence, Shading,
+    SurfaceOptions, TessellatedSurface, View, Workaround, ring,
 };
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery};
 use crate::mesh::Model;
 use crate::method::{DepthTags, Displacement, Prepared};
-use crate::tessellation::Spacing;
 
 use cuts::key;
 pub use cuts::{SPACINGS, bits, cut, over_patches, prepare, spacing_name, vertices};
+use pipelines::PipelineKey;
 
 /// The side of the picture that surfaces are drawn into.
 pub const SIDE: u32 = 256;
 
 /// The most vertices that are captured in one submission: 36 MB.
 const MOST_CAPTURED: u32 = 1_000_000;
-
-/// What pipelines depend on: the shaders of the passes, who cuts, spacing, and what becomes of the triangles.
-type PipelineKey = (Vec<&'static str>, Makers, Spacing, bool, vk::CullModeFlags);
-
-/// Who cuts patches, and where their control points live.
-type Makers = (Backend, Residence);
 
 /// A device with what surfaces share, kept from case to case: pipelines take long to build.
 pub struct Bench {
@@ -103,82 +98,6 @@ impl Bench {
         // SAFETY: the upload has been waited for.
         unsafe { surface.finish_upload(device, &mut self.device.allocator()) };
         Ok(loaded)
-    }
-
-    /// Lets `use_them` use the pipelines for a prepared model, which are built once.
-    fn with_pipelines<T>(
-        &self,
-        prepared: &Prepared,
-        makers: Makers,
-        spacing: Spacing,
-        fill: Fill,
-        cull: vk::CullModeFlags,
-        use_them: impl FnOnce(&Pipelines) -> Result<T>,
-    ) -> Result<T> {
-        let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, makers, spacing, fill == Fill::Discard, cull);
-        let mut all = self.pipelines.borrow_mut();
-        if !all.contains_key(&key) {
-            let cache = vk::PipelineCache::null();
-            let built = self.build(prepared, makers, spacing, fill, cull, cache)?;
-            all.insert(key.clone(), built);
-        }
-        use_them(&all[&key])
-    }
-
-    /// Builds pipelines with a cache.
-    fn build(
-        &self,
-        prepared: &Prepared,
-        makers: Makers,
-        spacing: Spacing,
-        fill: Fill,
-        cull: vk::CullModeFlags,
-        cache: vk::PipelineCache,
-    ) -> Result<Pipelines> {
-        let target = Target {
-            render_pass: self.target.render_pass(),
-            samples: self.target.samples(),
-            cull,
-            compare: vk::CompareOp::LESS_OR_EQUAL,
-        };
-        let (device, layout) = (self.device.raw(), self.layout());
-        let (backend, residence) = makers;
-        // SAFETY: all of one live device.
-        unsafe {
-            Pipelines::new(
-                device, layout, cache, prepared, target, backend, residence, spacing, fill,
-            )
-        }
-    }
-
-    /// Forgets all pipelines, builds new ones for a prepared model with a cache that holds `data`, and returns what the cache holds then.
-    pub fn rebuild(
-        &self,
-        prepared: &Prepared,
-        spacing: Spacing,
-        fill: Fill,
-        data: &[u8],
-    ) -> Result<Vec<u8>> {
-        self.forget();
-        let device = self.device.raw();
-        let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
-        // SAFETY: the device is live; the data are empty or what this device gave.
-        let cache = unsafe { device.create_pipeline_cache(&info, None) }
-            .map_err(crate::gpu::failed("vkCreatePipelineCache"))?;
-        let makers = (Backend::Tessellator, Residence::Ring);
-        let cull = vk::CullModeFlags::NONE;
-        let built = self.build(prepared, makers, spacing, fill, cull, cache);
-        // SAFETY: the cache is ours, and the pipelines do not need it any more.
-        let held = unsafe {
-            let held = device.get_pipeline_cache_data(cache);
-            device.destroy_pipeline_cache(cache, None);
-            held.map_err(crate::gpu::failed("vkGetPipelineCacheData"))
-        };
-        let shaders = prepared.passes.iter().map(|pass| pass.shader).collect();
-        let key = (shaders, makers, spacing, fill == Fill::Discard, cull);
-        self.pipelines.borrow_mut().insert(key, built?);
-        held
     }
 
     fn saw(&self, count: usize) {

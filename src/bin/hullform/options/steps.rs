@@ -1,0 +1,76 @@
+//! How finely surfaces are cut, by whom, and where their control points live.
+
+use clap::{Args, ValueEnum};
+
+use super::{Cutting, Spacing, level};
+
+/// How finely: options of whatever tessellates.
+#[derive(Args)]
+pub struct Steps {
+    /// Tessellation level, 1 to 64
+    #[arg(long, default_value = "8", value_parser = level)]
+    pub level: f32,
+    /// Spacing of the vertices along an edge
+    #[arg(long, default_value = "equal")]
+    pub spacing: Spacing,
+    /// Who cuts patches into triangles; all but the tessellator raise levels to powers of two
+    #[arg(long, value_name = "WHO", default_value = "tessellator")]
+    pub backend: Backend,
+    /// Where control points live of patches that need more than their vertices
+    #[arg(long, value_name = "WHERE", default_value = "ring")]
+    pub residence: Residence,
+}
+
+/// Where control points live.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Residence {
+    /// In the scratch ring: control shaders compute them as they go
+    Ring,
+    /// In a cache: a compute pass computes each once
+    Cache,
+}
+
+impl From<Residence> for hullform::gpu::Residence {
+    fn from(residence: Residence) -> Self {
+        match residence {
+            Residence::Ring => hullform::gpu::Residence::Ring,
+            Residence::Cache => hullform::gpu::Residence::Cache,
+        }
+    }
+}
+
+/// Who cuts patches into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The tessellator, between control and evaluation shaders
+    Tessellator,
+    /// Refinement patterns in instances, evaluated in the vertex shader
+    Pattern,
+    /// The geometry shader, up to level 32
+    Geometry,
+}
+
+impl From<Backend> for hullform::gpu::Backend {
+    fn from(backend: Backend) -> Self {
+        match backend {
+            Backend::Tessellator => hullform::gpu::Backend::Tessellator,
+            Backend::Pattern => hullform::gpu::Backend::Pattern,
+            Backend::Geometry => hullform::gpu::Backend::Geometry,
+        }
+    }
+}
+
+impl Steps {
+    /// As the library takes it.
+    pub fn cutting(&self) -> Cutting {
+        Cutting {
+            cut: hullform::gpu::Cut {
+                level: self.level,
+                spacing: self.spacing.into(),
+            },
+            backend: self.backend.into(),
+            residence: self.residence.into(),
+            adaptive: None,
+        }
+    }
+}

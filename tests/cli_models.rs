@@ -405,6 +405,7 @@ fn tessellations_do_not_depend_on_the_ring() {
     let reference = tessellate(&[]);
     assert!(tessellate(&["--ring-bytes", "16KiB"]) == reference);
     assert!(tessellate(&["--slots", "host"]) == reference);
+    assert!(tessellate(&["--residence", "cache"]) == reference);
 }
 
 /// Patterns and geometry shaders give the same file; 21 triangles are 21 x 4^3 at level 8, and depth tags need fewer.
@@ -450,4 +451,12 @@ fn backends_and_depth_tags_are_options() {
         "pattern",
     ];
     assert!(fails(&ring, 2).contains("--backend"));
+    // With cached control points it goes.
+    let [pattern, geometry] = ["pattern", "geometry"].map(|backend| {
+        let cached = ["--residence", "cache", "--backend", backend];
+        let report = json(&run(&[&ring[..4], &cached, &["--json"]].concat()));
+        assert_eq!(number(&report["triangles"]), 6 * 128);
+        std::fs::read(&csv).expect("it was written")
+    });
+    assert!(pattern == geometry);
 }

@@ -55,9 +55,15 @@ impl Subject<'_> {
         camera: Camera,
         size: [f32; 2],
     ) -> Result<(camera::View, Option<DepthTags>)> {
-        let Cutting { cut, backend, .. } = self.cutting;
+        let Cutting {
+            cut,
+            backend,
+            residence,
+            ..
+        } = self.cutting;
         let options = SurfaceOptions {
             backend,
+            residence,
             ring_bytes: self.ring_bytes,
             // These hold whatever runs how often.
             slots: Slots::Host,

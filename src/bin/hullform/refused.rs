@@ -17,7 +17,7 @@ pub fn in_words_of_options(error: Error) -> Error {
         ),
         Misuse::BackendWithoutRing { .. } => (
             "--backend",
-            "choose the backend tessellator, or a method without a ring",
+            "choose the backend tessellator, --residence cache, or a method without a ring",
         ),
         Misuse::BackendLevel { .. } => (
             "--level",

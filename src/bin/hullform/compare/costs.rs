@@ -56,6 +56,7 @@ fn prepare<'a>(
     let options = SurfaceOptions {
         count_vertices: !device_counts,
         backend: cutting.backend,
+        residence: cutting.residence,
         ring_bytes: global.ring_bytes,
         slots: Drawing::slots(global.slots),
         greatest_level: cutting.cut.level,

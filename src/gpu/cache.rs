@@ -149,6 +149,8 @@ impl Pose {
     /// Records the computation of all control points that a list is drawn with, if they are not in the cache already: for a list of the same level
     /// or a lower one, and positions that have not changed, nothing. Returns how many are computed.
     ///
+    /// They count as cached from here on: if the commands are never submitted, say so by [`positions_changed`](Self::positions_changed).
+    ///
     /// It waits for the draws of earlier frames, and later draws wait for it. Binds compute pipelines and sets 0 and 1, and pushes constants.
     ///
     /// # Errors

@@ -205,7 +205,6 @@ impl<'a> Ruler<'a> {
         let number = vertex.patch_number as usize;
         let ptex = pass.patches[number].ptex;
         let uv = to_ptex(&pass.patches[number], vertex.uv);
-        let mut most_degrees = self.most_degrees;
         let right = match &self.right {
             Right::Truth(truth) => self.of_truth(truth, ptex, uv),
             Right::Twin(controls) => Some(self.of_twin(controls, pass, vertex)),
@@ -219,11 +218,19 @@ impl<'a> Ruler<'a> {
                 }
             }
             Right::LatticeNormals(truth, controls) => match pass.is_on_lattice(vertex.uv) {
+                true if has_promised_normal(truth, ptex, uv) => self.of_truth(truth, ptex, uv),
                 true => {
-                    if !has_promised_normal(truth, ptex, uv) {
-                        most_degrees = UNPROMISED;
-                    }
-                    self.of_truth(truth, ptex, uv)
+                    // By the twin to the method's own bound, and that near the truth.
+                    let twin = self.of_twin(controls, pass, vertex);
+                    let right = self.of_truth(truth, ptex, uv);
+                    let normals = right.and_then(|(_, right)| twin.1.zip(right));
+                    let apart = normals.map_or(0.0, |(own, right)| {
+                        own.cross(right).length().atan2(own.dot(right)).to_degrees()
+                    });
+                    check.hold(apart <= UNPROMISED, || {
+                        format!("{apart:.2} degrees off the truth at {uv:?} of ptex face {ptex}")
+                    });
+                    right.map(|(position, _)| (position, twin.1))
                 }
                 false => Some(self.of_twin(controls, pass, vertex)),
             },
@@ -259,7 +266,7 @@ impl<'a> Ruler<'a> {
                 .to_degrees()
         });
         // NaN must not pass.
-        check.hold(units <= self.most && degrees <= most_degrees, || {
+        check.hold(units <= self.most && degrees <= self.most_degrees, || {
             format!("{units:.2} units and {degrees:.4} degrees off at {uv:?} of ptex face {ptex}")
         });
         [units, degrees]

@@ -9,7 +9,7 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
-use crate::frame::{Backend, Cut, Draw, SurfaceOptions};
+use crate::frame::{Backend, Cut, Draw, Residence, SurfaceOptions};
 use crate::method::{DepthTags, Pass, Prepared};
 use crate::tessellation::{
     Levels, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
@@ -25,6 +25,7 @@ pub struct DrawList {
     options: SurfaceOptions,
     instance_vertices: Option<u32>,
     cut: Cut,
+    cached_level: Option<u32>,
     runs: Vec<Run>,
     ring_batches: u32,
     /// By run.
@@ -62,6 +63,8 @@ impl DrawList {
             options: *options,
             instance_vertices,
             cut,
+            cached_level: (options.residence == Residence::Cache)
+                .then(|| cut.cached_level(prepared)),
             ring_batches: runs.iter().filter(uses_ring).count() as u32,
             draws: Vec::new(),
             tagged: tagged.transpose()?,
@@ -142,6 +145,11 @@ impl DrawList {
     /// The cut, as the backend makes it.
     pub fn cut(&self) -> Cut {
         self.cut
+    }
+
+    /// The plan level whose control points have to be cached for it; None where the ring has them.
+    pub fn cached_level(&self) -> Option<u32> {
+        self.cached_level
     }
 
     /// The options that it was made for.

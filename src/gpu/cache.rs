@@ -25,6 +25,8 @@ pub(super) struct Cache {
     bytes: u64,
     /// The plan level whose points it has; None where it has none of the present positions.
     level: Option<u32>,
+    /// The plan level by which slots are placed, and the points in them.
+    placed: Option<(u32, u32)>,
 }
 
 impl Cache {
@@ -40,6 +42,7 @@ impl Cache {
                 deepest,
                 bytes: 16 * u64::from(slots.end),
                 level: None,
+                placed: None,
             }
         })
     }
@@ -146,10 +149,17 @@ impl Pose {
         }
     }
 
+    /// Says that commands of [`cmd_cache`](Self::cmd_cache) were never executed: there is nothing in the cache.
+    pub fn forget_cache(&mut self) {
+        if let Some(cache) = &mut self.cache {
+            (cache.level, cache.placed) = (None, None);
+        }
+    }
+
     /// Records the computation of all control points that a list is drawn with, if they are not in the cache already: for a list of the same level
     /// or a lower one, and positions that have not changed, nothing. Returns how many are computed.
     ///
-    /// They count as cached from here on: if the commands are never submitted, say so by [`positions_changed`](Self::positions_changed).
+    /// They count as cached from here on: if the commands are never executed, say so by [`forget_cache`](Self::forget_cache).
     ///
     /// It waits for the draws of earlier frames, and later draws wait for it. Binds compute pipelines and sets 0 and 1, and pushes constants.
     ///
@@ -172,9 +182,8 @@ impl Pose {
     ) -> Result<u32> {
         self.check(tables)?;
         let prepared = tables.prepared();
-        let needed = list.cut().cached_level(prepared);
-        let cache = self.cache.as_ref();
-        let Some(cache) = cache.filter(|cache| needed <= cache.deepest) else {
+        let cache = self.cache.as_ref().zip(list.cached_level());
+        let Some((cache, needed)) = cache.filter(|(cache, needed)| *needed <= cache.deepest) else {
             return Err(Error::Misuse(Misuse::NotCached));
         };
         let shaders = prepared.passes.iter().map(|pass| pass.shader);
@@ -184,13 +193,19 @@ impl Pose {
         if cache.level.is_some_and(|level| needed <= level) {
             return Ok(0);
         }
-        let slots = Slots::new(prepared, needed);
+        // Where slots begin depends on the level alone: what moves from frame to frame finds them in place.
+        let placed = cache.placed.filter(|&(level, _)| level == needed);
+        let slots = placed.is_none().then(|| Slots::new(prepared, needed));
+        let points = placed.map(|(_, points)| points);
+        let points = points.or(slots.as_ref().map(|slots| slots.points));
+        let starts = slots.as_ref().map_or(&[][..], |slots| &slots.starts);
         // SAFETY: this function's contract.
-        unsafe { self.cmd_fill(device, cmd, layout, pipelines, tables, (needed, &slots)) };
+        unsafe { self.cmd_fill(device, cmd, layout, pipelines, tables, (needed, starts)) };
+        let points = points.unwrap_or(0);
         if let Some(cache) = &mut self.cache {
-            cache.level = Some(needed);
+            (cache.level, cache.placed) = (Some(needed), Some((needed, points)));
         }
-        Ok(slots.points)
+        Ok(points)
     }
 
     /// # Safety
@@ -202,7 +217,7 @@ impl Pose {
         layout: &Layout,
         pipelines: &CachePipelines,
         tables: &Tables,
-        (level, slots): (u32, &Slots),
+        (level, starts): (u32, &[u32]),
     ) {
         let (compute, transfer) = (
             vk::PipelineStageFlags::COMPUTE_SHADER,
@@ -213,7 +228,7 @@ impl Pose {
         // Synchronization is a matter of whole buffers: dispatches write points behind the slots, each those of its own patches.
         let read = vk::AccessFlags::SHADER_READ;
         let both = read | vk::AccessFlags::SHADER_WRITE;
-        let words: &[u8] = bytemuck::cast_slice(&slots.starts);
+        let words: &[u8] = bytemuck::cast_slice(starts);
         // SAFETY: this function's contract.
         unsafe {
             let write = vk::AccessFlags::TRANSFER_WRITE | vk::AccessFlags::SHADER_WRITE;
@@ -262,12 +277,11 @@ impl Pose {
 
     /// # Errors
     /// [`Misuse::NotCached`] where the cache has not all points that a list is drawn with.
-    pub(super) fn check_cached(&self, tables: &Tables, list: &DrawList) -> Result<()> {
-        if list.options().residence == Residence::Ring {
+    pub(super) fn check_cached(&self, list: &DrawList) -> Result<()> {
+        let Some(needed) = list.cached_level() else {
             return Ok(());
-        }
+        };
         let level = self.cache.as_ref().and_then(|cache| cache.level);
-        let needed = list.cut().cached_level(tables.prepared());
         if level.is_some_and(|level| needed <= level) {
             return Ok(());
         }

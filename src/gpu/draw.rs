@@ -53,7 +53,7 @@ impl Drawing<'_> {
         pose.check(tables)?;
         slot.check_list(tables, batch.list())?;
         slot.check_view(view)?;
-        pose.check_cached(tables, batch.list())?;
+        pose.check_cached(batch.list())?;
         let pass = batch.pass();
         let pipeline = pipelines.for_pass(tables.prepared(), batch.list(), pass)?;
         let graphics = vk::PipelineBindPoint::GRAPHICS;
@@ -80,7 +80,7 @@ impl Drawing<'_> {
     /// Whether the pose has all control points that a list is drawn with, so that [`cmd_cache`](Pose::cmd_cache) would record nothing; true where the
     /// ring has them.
     pub fn is_cached(&self, list: &DrawList) -> bool {
-        self.pose.check_cached(self.tables, list).is_ok()
+        self.pose.check_cached(list).is_ok()
     }
 
     /// # Safety

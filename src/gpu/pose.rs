@@ -27,7 +27,8 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Makes buffers and a descriptor set for control vertices in local units; of the options count where control points live, and the greatest level. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
+    /// Makes buffers and a descriptor set for control vertices in local units; of the options count where control points live, and the greatest level.
+    /// Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
     ///
     /// # Errors
     /// [`Misuse::Count`] when the number of positions is not that of the model; [`Misuse::BufferTooLarge`]; Vulkan's own.

@@ -81,8 +81,10 @@ const uint USE_TURN_SHIFT = 4u;
 const uint USE_SPARE = 128u;
 // Use flag: the vertex has no tangents for the face, only those nearby.
 const uint USE_CUSP = 256u;
+// Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
+const uint USE_INSIDE = 512u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-const uint USE_SIDE_SHIFT = 9u;
+const uint USE_SIDE_SHIFT = 10u;
 // Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
 const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.
@@ -99,6 +101,16 @@ const uint NODE_TERMINAL = 4u;
 const uint NODE_EXTRAORDINARY = 5u;
 // Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
 const uint NODE_CURVE = 6u;
+// In a node's kind, the number of the stencil that its points are relative to, plus 1; 0 without one. Four bits.
+const uint NODE_BASE_SHIFT = 16u;
+// In a node's kind, the use of the corner whose vertex that stencil is relative to; 0 where it is relative to the ring's first. Four bits.
+const uint NODE_ORIGIN_SHIFT = 20u;
+// In its place where points are the vertices themselves.
+const uint ORIGIN_NONE = 15u;
+// The first word of a stencil: its sum is relative to the ring's first vertex.
+const uint STENCIL_OWN = 0u;
+// The first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
+const uint STENCIL_CORNER = 5u;
 // Points in a level of a terminal node: sixteen for each of its children x + 2 y.
 const uint TERMINAL_POINTS = 64u;
 // Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
@@ -184,11 +196,12 @@ struct Patch {
 struct Border {
     // How many vertices the rings of the plans have; 0 where there is no plan.
     uint sizes[9];
-    // Where the plans' weights begin, a ring's for each stencil.
+    // Where the plans' weights begin: for each stencil a word `STENCIL_...`, and a weight for each vertex of the ring.
     uint weights[9];
     // The nodes that walks begin with.
     uint roots[9];
-    // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has; not for the inside.
+    // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
+    // inside, whose ring is the patch's.
     uint rings[9];
     // `USE_...` flags.
     uint flags[9];
@@ -270,7 +283,7 @@ struct TablePlace {
 
 // A node of a quadtree.
 struct Node {
-    // `NODE_...`, then the corner or edge << 4, then the number of levels << 8.
+    // `NODE_...`, then the corner or edge << 4, then the number of levels << 8, and what the points are relative to.
     uint kind;
     // Internal: the first child. Otherwise where its points begin, counted in 16-bit halves.
     uint points;

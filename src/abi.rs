@@ -191,8 +191,10 @@ constants! {
     USE_SPARE = 128;
     /// Use flag: the vertex has no tangents for the face, only those nearby.
     USE_CUSP = 256;
+    /// Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
+    USE_INSIDE = 512;
     /// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-    USE_SIDE_SHIFT = 9;
+    USE_SIDE_SHIFT = 10;
     /// Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
     PATCH_TURNED_CORNER = 128;
 
@@ -210,6 +212,16 @@ constants! {
     NODE_EXTRAORDINARY = 5;
     /// Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
     NODE_CURVE = 6;
+    /// In a node's kind, the number of the stencil that its points are relative to, plus 1; 0 without one. Four bits.
+    NODE_BASE_SHIFT = 16;
+    /// In a node's kind, the use of the corner whose vertex that stencil is relative to; 0 where it is relative to the ring's first. Four bits.
+    NODE_ORIGIN_SHIFT = 20;
+    /// In its place where points are the vertices themselves.
+    ORIGIN_NONE = 15;
+    /// The first word of a stencil: its sum is relative to the ring's first vertex.
+    STENCIL_OWN = 0;
+    /// The first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
+    STENCIL_CORNER = 5;
     /// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
     TERMINAL_POINTS = 64;
 
@@ -304,11 +316,12 @@ structs! {
     Border {
         /// How many vertices the rings of the plans have; 0 where there is no plan.
         sizes: [u32; 9],
-        /// Where the plans' weights begin, a ring's for each stencil.
+        /// Where the plans' weights begin: for each stencil a word `STENCIL_...`, and a weight for each vertex of the ring.
         weights: [u32; 9],
         /// The nodes that walks begin with.
         roots: [u32; 9],
-        /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has; not for the inside.
+        /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
+        /// inside, whose ring is the patch's.
         rings: [u32; 9],
         /// `USE_...` flags.
         flags: [u32; 9],
@@ -390,7 +403,7 @@ structs! {
 
     /// A node of a quadtree.
     Node {
-        /// `NODE_...`, then the corner or edge << 4, then the number of levels << 8.
+        /// `NODE_...`, then the corner or edge << 4, then the number of levels << 8, and what the points are relative to.
         kind: u32,
         /// Internal: the first child. Otherwise where its points begin, counted in 16-bit halves.
         points: u32,

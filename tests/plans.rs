@@ -63,7 +63,7 @@ fn hold_sums(plan: &Plan) {
         let sum: f64 = stencil.weights.iter().sum();
         let size: f64 = stencil.weights.iter().map(|w| w.abs()).sum();
         let off = (sum - sum.round()).abs();
-        let whole = sum.round() == 1.0 || sum.round() == 0.0 && number > 1;
+        let whole = sum.round() == 1.0 || sum.round() == 0.0 && number > 0;
         assert!(off < 1e-12 * size.max(1.0) && whole, "{number}: {sum}");
         assert_eq!(stencil.weights.len(), plan.ring_size);
     }
@@ -85,11 +85,12 @@ fn hold_tree(plan: &Plan, children_each: usize) {
                 points,
                 edge,
                 sharpness,
+                ..
             } => {
                 assert!(points.iter().all(|&p| p < stencils));
                 assert!(*edge < 4 && *sharpness > 0.0);
             }
-            Node::Terminal { corner, levels } => {
+            Node::Terminal { corner, levels, .. } => {
                 assert!(*corner < 4 && !levels.is_empty());
                 assert!(levels.iter().flatten().all(|&p| p < stencils));
             }
@@ -97,6 +98,7 @@ fn hold_tree(plan: &Plan, children_each: usize) {
                 points,
                 edge,
                 sharpness,
+                ..
             } => {
                 assert!(points.iter().all(|&p| p < stencils) && points.len() % 16 == 0);
                 assert!([1, 3].contains(edge) && *sharpness >= 0.0);
@@ -121,7 +123,8 @@ fn points_read(packed: &PackedPlans, plan: u32, uv: Vec2) -> Option<Vec<u32>> {
         let point = plans.point(leaf.points + i);
         point.expect("a leaf has its points")
     };
-    (leaf.kind != abi::NODE_EXTRAORDINARY).then(|| (0..16).map(point).collect())
+    let base = (leaf.base > 0).then(|| leaf.base - 1);
+    (leaf.kind != abi::NODE_EXTRAORDINARY).then(|| (0..16).map(point).chain(base).collect())
 }
 
 /// Every point that a coordinate reads is among those that its tess level has.

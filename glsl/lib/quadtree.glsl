@@ -27,25 +27,30 @@ struct Leaf {
     float scale;
     uint edge;
     float sharpness;
+    // What its points are relative to: the number of a stencil plus 1, and the use of the corner whose vertex that is relative to; 0 for none.
+    uint base;
+    uint origin;
     uint kind;
 };
 
 // Levels around an extraordinary vertex: the level is floor(-log2) of the larger distance from it, read off the float's exponent.
-Leaf terminal_leaf(uint points, uint corner, uint levels, vec2 uv, float scale) {
+Leaf terminal_leaf(Leaf leaf, uint levels) {
+    uint corner = leaf.edge;
+    vec2 uv = leaf.uv;
     bvec2 at = bvec2(corner == 1u || corner == 2u, corner >= 2u);
     precise vec2 other = 1.0 - uv;
     vec2 from_corner = mix(uv, other, at);
     uint exponent = floatBitsToUint(max(from_corner.x, from_corner.y)) >> 23u;
     uint level = 126u - min(exponent, 126u);
-    if (level >= levels) return Leaf(0u, vec2(0.0), scale, corner, 0.0, NODE_EXTRAORDINARY);
+    if (level >= levels) return Leaf(0u, vec2(0.0), leaf.scale, corner, 0.0, 0u, 0u, NODE_EXTRAORDINARY);
     float grown = power_of_two(int(level));
     precise vec2 local = from_corner * grown;
     bvec2 child = notEqual(greaterThanEqual(local, vec2(0.5)), at);
     precise vec2 beyond = 1.0 - local;
     precise vec2 inside = 2.0 * mix(local, beyond, at) - vec2(child);
-    precise float whole = scale * grown * 2.0;
-    uint first = points + TERMINAL_POINTS * level + 16u * (uint(child.x) + 2u * uint(child.y));
-    return Leaf(first, inside, whole, 0u, 0.0, NODE_TERMINAL);
+    precise float whole = leaf.scale * grown * 2.0;
+    uint first = leaf.points + TERMINAL_POINTS * level + 16u * (uint(child.x) + 2u * uint(child.y));
+    return Leaf(first, inside, whole, 0u, 0.0, leaf.base, leaf.origin, NODE_TERMINAL);
 }
 
 // The tree of an edge is walked along v = 0.
@@ -69,8 +74,11 @@ Leaf find_leaf(uint root, vec2 from) {
     }
     uint kind = kind_word & 15u;
     uint place = kind_word >> 4u & 15u;
-    if (kind == NODE_TERMINAL) return terminal_leaf(points, place, kind_word >> 8u, uv, scale);
-    return Leaf(points, uv, scale, place, nodes[number].sharpness, kind);
+    uint base = kind_word >> NODE_BASE_SHIFT & 15u;
+    uint origin = kind_word >> NODE_ORIGIN_SHIFT & 15u;
+    Leaf leaf = Leaf(points, uv, scale, place, nodes[number].sharpness, base, origin, kind);
+    if (kind == NODE_TERMINAL) return terminal_leaf(leaf, kind_word >> 8u & 255u);
+    return leaf;
 }
 
 #endif

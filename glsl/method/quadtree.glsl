@@ -87,7 +87,7 @@ struct Ring {
 // rounding.
 Ring use_ring(Patch record, uint number, uint stencils) {
     uint size = borders[border_of(record)].sizes[number];
-    precise float needed = float(size) * float(stencils);
+    precise float needed = float(size + 1u) * float(stencils);
     precise float most = 1.00001 * float(weights.length());
     return Ring(needed <= most ? size : 0u, borders[border_of(record)].rings[number], bases.own[2] + borders[border_of(record)].weights[number], number == 0u);
 }
@@ -95,17 +95,34 @@ Ring use_ring(Patch record, uint number, uint stencils) {
 // Vertex i of it.
 vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : control_at(ring.places + i)); }
 
-// A stencil's sum over a ring, relative to `origin`: so it errs by what the ring's own size has for rounding.
+// Where the row of a stencil begins: with a word that tells what it is relative to, then a weight for each vertex of the ring.
+uint stencil_row(Ring ring, uint number) { return ring.weights + number * (ring.size + 1u); }
+
+// Place i in the order in which stencils of the inside are summed, which is that of the vertices' numbers in the mesh: so faces that share a point give
+// it the same bits.
+uint summed_place(Patch record, Ring ring, uint i) {
+    if (!ring.inside) return i;
+    uint word = control_at(record.controls + ring.size + (i >> 1u));
+    return (i & 1u) != 0u ? word >> 16u : word & 0xffffu;
+}
+
+// A stencil's sum over a ring, relative to a vertex near it: so it errs by what the ring's own size has for rounding.
 //
 // Rings too long for the vertex shader are also too long for a plain sum: where hundreds of faces meet, the tangents of neighbours differ by
 // less than it would lose.
-vec3 stencil_point(Patch record, Ring ring, vec3 origin, uint number) {
-    uint weight = ring.weights + number * ring.size;
+vec3 stencil_point(Patch record, Ring ring, uint number) {
+    uint row = stencil_row(ring, number);
+    uint corner = floatBitsToUint(weights[row]);
+    uint place = ring.inside ? 0u : control_at(ring.places);
+    if (ring.inside && corner != STENCIL_OWN) place = control_at(borders[border_of(record)].rings[min(corner, USES - 1u)]);
+    vec3 origin = ring_point(record, place);
+    uint weight = row + 1u;
     precise vec3 sum = vec3(0.0);
 #ifdef LONG_RINGS
     vec3 lost = vec3(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
-        precise vec3 term = weights[weight + i] * (ring_vertex(record, ring, i) - origin);
+        uint at = summed_place(record, ring, i);
+        precise vec3 term = weights[weight + at] * (ring_vertex(record, ring, at) - origin);
         precise vec3 next = sum + term;
         if (ring.size > CONTROL_INVOCATIONS) {
             add_compensated(sum, lost, term);
@@ -114,14 +131,18 @@ vec3 stencil_point(Patch record, Ring ring, vec3 origin, uint number) {
         }
     }
 #else
-    for (uint i = 0u; i < ring.size; ++i) sum += weights[weight + i] * (ring_vertex(record, ring, i) - origin);
+    for (uint i = 0u; i < ring.size; ++i) {
+        uint at = summed_place(record, ring, i);
+        sum += weights[weight + at] * (ring_vertex(record, ring, at) - origin);
+    }
 #endif
     return sum;
 }
 
 // The pair of tangents whose first is stencil `number`, as `stencil_point`.
 Tangents ring_tangents(Patch record, Ring ring, uint number) {
-    uint weight = ring.weights + number * ring.size;
+    uint first = stencil_row(ring, number) + 1u;
+    uint second = stencil_row(ring, number + 1u) + 1u;
     vec3 origin = ring_vertex(record, ring, 0u);
     vec3 du = vec3(0.0);
     vec3 dv = vec3(0.0);
@@ -131,7 +152,7 @@ Tangents ring_tangents(Patch record, Ring ring, uint number) {
     precise vec2 total = vec2(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
         precise vec3 spoke = ring_vertex(record, ring, i) - origin;
-        vec2 pair = vec2(weights[weight + i], weights[weight + ring.size + i]);
+        vec2 pair = vec2(weights[first + i], weights[second + i]);
         precise vec3 along_u = pair.x * spoke;
         precise vec3 along_v = pair.y * spoke;
         add_compensated(du, lost_u, along_u);
@@ -205,10 +226,12 @@ Part find_part(Parts parts, uint next) {
 // The head of use `number`.
 vec4 use_head(Patch record, Parts parts, uint number) {
     bool planned = borders[border_of(record)].sizes[number] > 0u;
+    bool inside = (borders[border_of(record)].flags[number] & USE_INSIDE) != 0u;
     uint first = number == 0u ? 0u : control_at(borders[border_of(record)].rings[number]);
     uint start = parts.plain_end;
-    for (uint i = 1u; i < USES; ++i) start = number == i ? parts.ends[i - 1u] : start;
-    return vec4(planned ? ring_point(record, first) : vec3(0.0), float(planned ? start : USES));
+    for (uint i = 1u; i < USES; ++i) start = number == i && !inside ? parts.ends[i - 1u] : start;
+    vec3 origin = planned || number >= STENCIL_CORNER ? ring_point(record, first) : vec3(0.0);
+    return vec4(origin, float(planned || inside ? start : USES));
 }
 
 // Fills the slot, stretch by stretch: every 32nd point is this invocation's. What differs is in loops of its own, since machines that run
@@ -222,16 +245,15 @@ void run_stencils(Patch record, uint slot, uint level, uint count) {
         scratch[slot + next].xyz = ring_point(record, control_at(plain + next));
     }
     Ring inside = use_ring(record, 0u, min(parts.ends[0] - parts.plain_end, count));
-    vec3 origin = ring_point(record, 0u);
     for (uint next = parts.plain_end + INVOCATION; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
-        scratch[slot + next].xyz = stencil_point(record, inside, origin, next - parts.plain_end);
+        scratch[slot + next].xyz = stencil_point(record, inside, next - parts.plain_end);
     }
     for (uint next = parts.ends[0] + INVOCATION; next < count; next += CONTROL_INVOCATIONS) {
         Part part = find_part(parts, next);
         Ring ring = use_ring(record, part.number, min(part.end - part.start, count));
         bool is_normal = part.number >= 5u && next > part.start;
         if (is_normal) ring.size = 0u;
-        vec3 point = stencil_point(record, ring, ring_vertex(record, ring, 0u), next - part.start);
+        vec3 point = stencil_point(record, ring, next - part.start);
         if (!is_normal) scratch[slot + next].xyz = point;
     }
     for (uint number = 5u + INVOCATION; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
@@ -255,11 +277,7 @@ bool has_one_normal(Patch record, vec2 uv) {
 // Row 1 is the position on an edge, row 2 that plus the derivative across.
 const Basis CURVE = Basis(vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, -1.0, 1.0, 0.0));
 
-// From this scale on, which is that of depth 2, points are relative to the one of their plan's first points that has the number of their quarter of
-// the tree (`plan/base.rs`).
-const float RELATIVE = 4.0;
-
-// Inside by the patch's own plan, on edges and at corners by those that all faces there share.
+// Inside by the patch's own plan, on edges and at corners by those that all faces there share; on an edge that both sides evaluate alike, by its own again.
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 #ifndef CACHED_POINTS
     memoryBarrierBuffer();
@@ -283,10 +301,10 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
-    uint quarter = uint(local.x >= 0.5) + 2u * uint(local.y >= 0.5);
-    bool relative = leaf.scale >= RELATIVE;
-    vec3 base = relative ? scratch[first + (relative ? quarter : 0u)].xyz : vec3(0.0);
-    precise vec3 position = (surface.position + base) + head.xyz;
+    vec3 base = leaf.base > 0u ? scratch[first + max(leaf.base, 1u) - 1u].xyz : vec3(0.0);
+    vec3 origin = leaf.origin > 0u && leaf.origin < USES ? scratch[slot + min(leaf.origin, USES - 1u)].xyz : head.xyz;
+    if (leaf.origin == ORIGIN_NONE) origin = vec3(0.0);
+    precise vec3 position = (surface.position + base) + origin;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;
     return surface_point(Surface(position, du, dv));

@@ -1,6 +1,7 @@
 //! `quadtree`: adaptive quadtrees (Brainerd et al. 2016). Regular faces are plain B-spline patches (section 7.1); every other face brings
 //! its 1-ring and a plan, whose stencils the control shader runs and whose quadtree the evaluation shader walks.
 
+mod agreement;
 mod border;
 mod corner;
 mod plain;
@@ -135,7 +136,7 @@ fn irregular(
     let mut catalogue = Catalogue::default();
     let mut number = |(part, ring): (Part, Ring)| {
         let plan = catalogue.number(ring.configuration.clone());
-        Irregular { part, ring, plan }
+        Irregular::new(part, ring, plan)
     };
     let patches: Vec<Irregular> = rings.into_iter().map(&mut number).collect();
     let mut packed = PackedPlans::default();
@@ -149,11 +150,12 @@ fn irregular(
         *count += packed.count(kind);
     }
     let inside_bytes = packed.quadtree_bytes();
-    let borders = Borders::new(topology, &patches, &mut packed, options)?;
+    let borders = Borders::new(topology, &patches, &plans, &mut packed, options)?;
     for (patch, &border) in patches.iter().zip(&borders.numbers) {
         let turn = patch.turn(topology);
         let vertices = &patch.ring.vertices;
         add(&mut pass, model, patch.part, turn, vertices).plan = border;
+        pass.controls.extend(patch.order_words());
     }
     let records = with_places(&mut pass, &borders);
     pass.scratch_points = records.iter().map(slot_sizes).collect();

@@ -3,14 +3,15 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Result};
-use crate::plan::base::{Bases, DEPTH, UNUSED};
+use crate::plan::base::{Bases, UNUSED};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
 use crate::plan::nearby;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
+use crate::plan::strip::{Strip, Stretch};
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
+use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, limit_stencil};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -51,14 +52,17 @@ impl PlanOptions {
     }
 }
 
-/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring. Control points at depth 2 and deeper are relative to one of the
-/// plan's first four (of an edge: two), the one of the root's child in which they are, number x + 2 y.
+/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring. Below the root of a tree control points are relative to one
+/// of the plan's first points, which the nodes name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stencil {
     /// One weight a vertex of the ring.
     pub weights: Vec<f64>,
     /// The lowest level that needs it, 0..=max_level.
     pub level: u32,
+    /// The corner of the face near which it is relative to the limit, or whose limit it is. The sum is then taken relative to that corner's vertex,
+    /// which has the same bits in all faces there; otherwise to the ring's first.
+    pub corner: Option<u32>,
 }
 
 /// The plan of a configuration.
@@ -74,6 +78,8 @@ pub struct Plan {
     pub stencils: Vec<Stencil>,
     /// At each corner whose normal is that of its surroundings, see `plan/nearby.rs`: two tangents, weights of the ring.
     pub nearby: [Option<[Vec<f64>; 2]>; 4],
+    /// Of a quad, its cells along each edge, as far as they have all points that the edge is evaluated with.
+    pub strips: [Option<Strip>; 4],
 }
 
 impl Plan {
@@ -93,9 +99,11 @@ impl Plan {
             bases,
             numbers: FxHashMap::default(),
         };
-        let tree = builder.grow(base).fold();
+        let tree = builder.grow(&base).fold();
         let Builder {
-            mut rows, bases, ..
+            mut rows,
+            mut bases,
+            ..
         } = builder;
         let mut levels = vec![options.max_level; rows.len()];
         require(
@@ -105,11 +113,23 @@ impl Plan {
             options.max_level,
             &mut levels,
         );
+        let nodes = tree.flatten();
+        let strips = match configuration.arity() {
+            4 => [0, 1, 2, 3].map(|edge| Strip::of(&nodes, edge)),
+            _ => Default::default(),
+        };
+        for stretch in strips.iter().flatten().flat_map(Strip::stretches) {
+            require_stretch(stretch, options.max_level, &mut levels);
+        }
+        for corner in bases.used() {
+            bases.found(corner, &limit_row(&base, corner));
+        }
         bases.apply(&mut rows, &mut levels);
-        Ok(Plan {
-            nearby,
-            ..sorted(tree.flatten(), &rows, &levels, options.max_level)
-        })
+        let mut plan = sorted(nodes, &rows, &levels, &bases.of_rows(), options.max_level);
+        if configuration.arity() == 4 {
+            plan.strips = [0, 1, 2, 3].map(|edge| Strip::of(&plan.nodes, edge));
+        }
+        Ok(Plan { nearby, ..plan })
     }
 
     /// How many stencils each level 0..=max_level needs; they are the first ones.
@@ -123,13 +143,26 @@ impl Plan {
     }
 }
 
+/// The weights of a corner's limit.
+fn limit_row(base: &Level, corner: u32) -> Vec<f64> {
+    let mut level = base.clone();
+    loop {
+        if let Some(limit) = limit_stencil(&level.topology, 0, corner) {
+            let mut rows = Rows::zero(level.rows.width(), 0);
+            rows.push(&limit.position, &level.rows);
+            return rows.row(0).to_vec();
+        }
+        level = level.refined(&[(0, corner)]);
+    }
+}
+
 /// A cell that waits to be turned into a leaf or four cells.
 #[derive(Clone, Copy)]
 struct Cell {
     /// The corner of the face that it touches, if any; the face itself touches all four.
     corner: Option<u32>,
-    /// The child of the face, number x + 2 y, that it is or lies in; 0 for the face itself.
-    quarter: usize,
+    /// The corner of the face that the limit is taken at which its points are relative to; none for the face itself.
+    base: Option<u32>,
 }
 
 /// What became of a cell at its level.
@@ -139,14 +172,20 @@ enum Grown {
     Children(usize),
 }
 
+/// A cell that needs no children.
+enum Leaf {
+    Spline(BsplinePatch),
+    Extraordinary(u32),
+}
+
 struct Builder {
     options: PlanOptions,
     /// The control points as they are met.
     rows: Rows,
     /// What the rows are relative to.
     bases: Bases,
-    /// The rows of this level's control points, which each quarter of the face has to itself where they are relative to its corner.
-    numbers: FxHashMap<(usize, ControlPoint), u32>,
+    /// The rows of this level's control points, for each base that they are relative to.
+    numbers: FxHashMap<(Option<u32>, ControlPoint), u32>,
 }
 
 /// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
@@ -157,33 +196,32 @@ pub(super) const DEEPEST: u32 = 11;
 
 impl Builder {
     /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
-    fn grow(&mut self, base: Level) -> Tree {
+    fn grow(&mut self, base: &Level) -> Tree {
         let mut grown: Vec<Vec<Grown>> = Vec::new();
         let mut cells = vec![Cell {
             corner: None,
-            quarter: 0,
+            base: None,
         }];
-        let mut level = base;
+        let mut level = base.clone();
         for depth in 0.. {
             self.numbers.clear();
+            let leaves: Vec<Option<Leaf>> = (0..)
+                .zip(&cells)
+                .map(|(number, cell)| self.leaf(&level, number, cell.corner, depth))
+                .collect();
+            if depth == 1 {
+                rebase(&mut cells, &leaves);
+            }
             let mut next = Vec::new();
             let mut parents = Vec::new();
             let mut row = Vec::with_capacity(cells.len());
-            for (number, &cell) in (0..).zip(&cells) {
-                if let (1.., Some(corner)) = (depth, cell.corner) {
-                    let vertex = level.topology.face(number)[corner as usize];
-                    self.bases
-                        .found(cell.quarter, level.rows.row(vertex as usize));
-                }
-                let leaf = self.leaf(&level, number, cell, depth);
+            for ((number, &cell), leaf) in (0..).zip(&cells).zip(leaves) {
+                let leaf = leaf.map(|leaf| self.node(&level, leaf, cell.base));
                 row.push(leaf.map_or(Grown::Children(next.len()), Grown::Leaf));
                 if let Grown::Children(_) = row[row.len() - 1] {
                     next.extend((0..4).map(|corner| Cell {
                         corner: (depth == 0 || cell.corner == Some(corner)).then_some(corner),
-                        quarter: match depth {
-                            0 => child_of_corner(corner),
-                            _ => cell.quarter,
-                        },
+                        base: cell.base.or(Some(corner)),
                     }));
                     parents.extend((0..4).map(|corner| (number, corner)));
                 }
@@ -199,28 +237,12 @@ impl Builder {
     }
 
     /// The cell as a leaf, or None when it must be refined.
-    fn leaf(&mut self, level: &Level, number: u32, cell: Cell, depth: u32) -> Option<Node> {
+    fn leaf(&self, level: &Level, number: u32, corner: Option<u32>, depth: u32) -> Option<Leaf> {
         let last = depth >= self.options.max_level.max(SHALLOWEST);
-        let patch = bspline_patch(&level.topology, number);
         let direct = self.options.direct_creases || last;
-        let mut points = |patch: &_| self.points(level, patch, depth, cell.quarter);
-        match (patch, cell.corner) {
-            (Some(patch), _) if patch.crease.is_none() => {
-                let mirrored = patch.mirrored;
-                Some(Node::Regular {
-                    points: points(&patch),
-                    mirrored,
-                })
-            }
-            (Some(patch), _) if direct => {
-                let (edge, sharpness) = patch.crease?;
-                Some(Node::Crease {
-                    points: points(&patch),
-                    edge,
-                    sharpness,
-                })
-            }
-            (_, Some(corner)) if last => Some(Node::Extraordinary { corner }),
+        match (bspline_patch(&level.topology, number), corner) {
+            (Some(patch), _) if patch.crease.is_none() || direct => Some(Leaf::Spline(patch)),
+            (_, Some(corner)) if last => Some(Leaf::Extraordinary(corner)),
             _ => {
                 assert!(
                     depth < DEEPEST,
@@ -231,21 +253,47 @@ impl Builder {
         }
     }
 
-    fn points(
-        &mut self,
-        level: &Level,
-        patch: &BsplinePatch,
-        depth: u32,
-        quarter: usize,
-    ) -> [u32; 16] {
-        let owner = if depth < DEPTH { 0 } else { quarter };
+    fn node(&mut self, level: &Level, leaf: Leaf, base: Option<u32>) -> Node {
+        let patch = match leaf {
+            Leaf::Spline(patch) => patch,
+            Leaf::Extraordinary(corner) => return Node::Extraordinary { corner },
+        };
+        let points = self.points(level, &patch, base);
+        match patch.crease {
+            None => Node::Regular {
+                points,
+                mirrored: patch.mirrored,
+                base,
+            },
+            Some((edge, sharpness)) => Node::Crease {
+                points,
+                edge,
+                sharpness,
+                base,
+            },
+        }
+    }
+
+    fn points(&mut self, level: &Level, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
         patch.points.map(|point| {
-            *self.numbers.entry((owner, point)).or_insert_with(|| {
+            *self.numbers.entry((base, point)).or_insert_with(|| {
                 self.rows.push(&point.mask(), &level.rows);
-                self.bases.pushed(depth, quarter);
+                self.bases.pushed(base);
                 self.rows.len() as u32 - 1
             })
         })
+    }
+}
+
+/// Where all quarters of a face but one are leaves, as around a single extraordinary vertex, the points of all four are relative to the limit at that one's
+/// corner: they are those of a terminal node.
+fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf>]) {
+    let mut others = quarters.iter().zip(leaves).filter(|(_, leaf)| {
+        // The last level ends with the extraordinary vertex itself.
+        !matches!(leaf, Some(Leaf::Spline(_)))
+    });
+    if let (Some((&only, _)), None) = (others.next(), others.next()) {
+        quarters.iter_mut().for_each(|quarter| quarter.base = only.base);
     }
 }
 
@@ -291,6 +339,7 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
         Tree::Leaf(Node::Terminal {
             corner,
             levels: grids,
+            ..
         }) => {
             let end = child_of_corner(*corner);
             let (mut u, mut v) = (u, v);
@@ -309,8 +358,26 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
     }
 }
 
-/// Sorts the stencils by level, leaves out those that nothing uses, and renumbers the points of the nodes.
-pub(super) fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_level: u32) -> Plan {
+/// Lowers the levels of the stencils of a stretch to the first level at which a tess coordinate on the edge falls into it.
+fn require_stretch(stretch: &Stretch, deepest: u32, levels: &mut [u32]) {
+    let level = stretch.span().required_level(deepest);
+    for &point in stretch.points.iter().flatten().flatten() {
+        let known = &mut levels[point as usize];
+        *known = level.min(*known);
+    }
+}
+
+/// Weights that are less are rounding of what is none.
+const LEAST: f64 = 1e-13;
+
+/// Sorts the stencils by level, leaves out those that nothing uses, and renumbers the points of the nodes. Bases are named by their rows.
+pub(super) fn sorted(
+    mut nodes: Vec<Node>,
+    rows: &Rows,
+    levels: &[u32],
+    corners: &[Option<u32>],
+    max_level: u32,
+) -> Plan {
     let used = |&point: &u32| levels[point as usize] != UNUSED;
     let mut order: Vec<u32> = (0..rows.len() as u32).filter(used).collect();
     order.sort_by_key(|&point| levels[point as usize]);
@@ -325,18 +392,34 @@ pub(super) fn sorted(mut nodes: Vec<Node>, rows: &Rows, levels: &[u32], max_leve
     };
     for node in &mut nodes {
         match node {
-            Node::Regular { points, .. } | Node::Crease { points, .. } => renumber(points),
-            Node::Terminal { levels, .. } => levels.iter_mut().for_each(|grid| renumber(grid)),
-            Node::Curve { points, .. } => renumber(points),
+            Node::Regular { points, base, .. } | Node::Crease { points, base, .. } => {
+                renumber(points);
+                renumber(base.as_mut_slice());
+            }
+            Node::Terminal { levels, base, .. } => {
+                levels.iter_mut().for_each(|grid| renumber(grid));
+                renumber(base.as_mut_slice());
+            }
+            Node::Curve { points, base, .. } => {
+                renumber(points);
+                renumber(base.as_mut_slice());
+            }
             Node::Internal { .. } | Node::Extraordinary { .. } => {}
         }
     }
+    let weights = |row: &[f64]| {
+        row.iter()
+            .map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight })
+            .collect()
+    };
     let stencils = order.iter().map(|&old| Stencil {
-        weights: rows.row(old as usize).to_vec(),
+        weights: weights(rows.row(old as usize)),
         level: levels[old as usize],
+        corner: corners[old as usize],
     });
     Plan {
         nearby: Default::default(),
+        strips: Default::default(),
         ring_size: rows.width(),
         max_level,
         nodes,

@@ -116,7 +116,7 @@ impl EdgePlan {
         bases.apply(&mut rows, &mut levels);
         let nodes = flatten(branch);
         Ok(EdgePlan {
-            plan: sorted(nodes, &rows, &levels, options.max_level),
+            plan: sorted(nodes, &rows, &levels, &vec![None; rows.len()], options.max_level),
             sides: if sharp { sides } else { Vec::new() },
         })
     }
@@ -132,7 +132,7 @@ impl Builder {
             span,
         } = stretch;
         // The half of the edge that it is or lies in.
-        let half = usize::from(!span.interior_half_is_upper());
+        let half = u32::from(!span.interior_half_is_upper());
         let both = [from, level.topology.edge(edge).other(from)];
         for (vertex, _) in both.iter().zip(ends).filter(|(_, end)| depth > 0 && *end) {
             self.bases.found(half, level.rows.row(*vertex as usize));
@@ -172,14 +172,16 @@ impl Builder {
     }
 
     fn leaf(&mut self, level: &Level, curve: &EdgeCurve, span: Span, depth: u32) -> Node {
-        let half = usize::from(!span.interior_half_is_upper());
+        let half = u32::from(!span.interior_half_is_upper());
         let required = span.required_level(self.options.max_level);
+        // Both halves may share points at depth 1.
+        let base = (depth > 1).then_some(half);
         let mut row = |masks: &[Mask; 4]| {
             let first = self.rows.len() as u32;
             for mask in masks {
                 self.rows.push(mask, &level.rows);
                 self.levels.push(required);
-                self.bases.pushed(depth, half);
+                self.bases.pushed(base);
             }
             [0, 1, 2, 3].map(|x| first + x)
         };
@@ -192,6 +194,7 @@ impl Builder {
             points,
             edge: [3, 1][end as usize],
             sharpness,
+            base,
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::plan::builder::Plan;
+use crate::plan::strip::Strip;
 use crate::plan::tree::{Node, NodeKind};
 
 /// Where a packed plan's parts begin, and how many stencils each level needs.
@@ -10,7 +11,7 @@ use crate::plan::tree::{Node, NodeKind};
 pub struct PlanHeader {
     /// Vertices of the 1-ring.
     pub ring_size: u32,
-    /// Where its weights begin, `ring_size` a stencil.
+    /// Where its weights begin: for each stencil the corner of [`Stencil::corner`](crate::plan::Stencil::corner), and one a vertex of the ring.
     pub weights: u32,
     /// Its root.
     pub root: u32,
@@ -46,7 +47,7 @@ pub struct PackedPlans {
     pub nodes: Vec<abi::Node>,
     /// The nodes' points: numbers of stencils, sixteen a B-spline, two 16-bit halves a word, the lower first.
     pub points: Vec<u32>,
-    /// The stencils' weights, and behind those of each plan its tangents near corners.
+    /// The stencils' weights, each after a word for its origin, and behind those of each plan its tangents near corners.
     pub weights: Vec<f32>,
     /// For each plan the number, among its stencils, of the first of two tangents near each corner; [`abi::NO_TANGENTS`] without any.
     pub nearby: Vec<[u32; 4]>,
@@ -72,12 +73,17 @@ impl PackedPlans {
         });
         let root = self.nodes.len() as u32;
         for node in &plan.nodes {
-            let packed = self.pack(node, root);
+            let packed = self.pack(node, plan, root);
             self.nodes.push(packed);
         }
         let tangents = plan.nearby.iter().flatten().flatten();
-        let rows = plan.stencils.iter().map(|stencil| &stencil.weights);
-        for row in rows.chain(tangents) {
+        let rows = plan
+            .stencils
+            .iter()
+            .map(|stencil| (&stencil.weights, stencil.corner));
+        for (row, corner) in rows.chain(tangents.map(|row| (row, None))) {
+            let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
+            self.weights.push(f32::from_bits(corner));
             self.weights.extend(row.iter().map(|&weight| weight as f32));
         }
         let mut next = plan.stencils.len() as u32;
@@ -97,37 +103,57 @@ impl PackedPlans {
     pub fn push_bspline(&mut self, points: &[u32; 16]) -> u32 {
         let points = self.list(points);
         self.nodes.push(abi::Node {
-            kind: NodeKind::Regular as u32,
+            kind: NodeKind::Regular as u32 | abi::ORIGIN_NONE << abi::NODE_ORIGIN_SHIFT,
             points,
             sharpness: 0.0,
         });
         self.nodes.len() as u32 - 1
     }
 
-    fn pack(&mut self, node: &Node, root: u32) -> abi::Node {
-        let (place, levels, points, sharpness) = match node {
-            Node::Internal { children } => (0, 0, root + children, 0.0),
-            Node::Regular { points, .. } => (0, 0, self.list(points), 0.0),
+    /// Appends the tree of an edge that a face evaluates with points of its own plan; returns its root.
+    pub fn push_strip(&mut self, plan: &Plan, strip: &Strip) -> u32 {
+        let root = self.nodes.len() as u32;
+        for node in strip.nodes() {
+            let packed = self.pack(&node, plan, root);
+            self.nodes.push(packed);
+        }
+        root
+    }
+
+    fn pack(&mut self, node: &Node, plan: &Plan, root: u32) -> abi::Node {
+        let (place, levels, points, base, sharpness) = match node {
+            Node::Internal { children } => (0, 0, root + children, None, 0.0),
+            Node::Regular { points, base, .. } => (0, 0, self.list(points), *base, 0.0),
             Node::Crease {
                 points,
                 edge,
                 sharpness,
-            } => (*edge, 0, self.list(points), *sharpness),
-            Node::Terminal { corner, levels } => (
-                *corner,
-                levels.len() as u32,
-                self.list(&children(levels)),
-                0.0,
-            ),
+                base,
+            } => (*edge, 0, self.list(points), *base, *sharpness),
+            Node::Terminal {
+                corner,
+                levels,
+                base,
+            } => {
+                let points = self.list(&children(levels));
+                (*corner, levels.len() as u32, points, *base, 0.0)
+            }
             Node::Curve {
                 points,
                 edge,
                 sharpness,
-            } => (*edge, 0, self.list(points), *sharpness),
-            Node::Extraordinary { corner } => (*corner, 0, 0, 0.0),
+                base,
+            } => (*edge, 0, self.list(points), *base, *sharpness),
+            Node::Extraordinary { corner } => (*corner, 0, 0, None, 0.0),
         };
+        // Bases come first among the stencils, so their numbers are small.
+        let base = base.map_or(0, |number| {
+            let corner = plan.stencils[number as usize].corner;
+            let origin = corner.map_or(0, |corner| abi::STENCIL_CORNER + corner);
+            (number + 1) << abi::NODE_BASE_SHIFT | origin << abi::NODE_ORIGIN_SHIFT
+        });
         abi::Node {
-            kind: node.kind() as u32 | place << 4 | levels << 8,
+            kind: node.kind() as u32 | place << 4 | levels << 8 | base,
             points,
             sharpness,
         }

@@ -34,6 +34,8 @@ pub enum Node {
         points: [u32; 16],
         /// Whether any of them lies beyond a boundary or infinite crease.
         mirrored: bool,
+        /// The point that they are relative to, if any.
+        base: Option<u32>,
     },
     /// A B-spline with a semi-sharp crease along the edge from corner `edge` to the next.
     Crease {
@@ -43,6 +45,8 @@ pub enum Node {
         edge: u32,
         /// The sharpness that is left at this node's level.
         sharpness: f32,
+        /// The point that the control points are relative to, if any.
+        base: Option<u32>,
     },
     /// Levels around the extraordinary vertex at `corner`, the outermost first.
     Terminal {
@@ -50,6 +54,8 @@ pub enum Node {
         corner: u32,
         /// For each level 5 x 5 points, number x + 5 y; the one beyond the extraordinary vertex is missing and stands as 0.
         levels: Vec<[u32; 25]>,
+        /// The point that they are relative to.
+        base: Option<u32>,
     },
     /// A stretch of an edge, in the plan of an edge: a B-spline whose row 1 is the position along the edge, and row 2 that plus the derivative
     /// across. The other rows have no weight.
@@ -60,6 +66,8 @@ pub enum Node {
         edge: u32,
         /// The sharpness that is left there at this node's level; 0 without a crease.
         sharpness: f32,
+        /// The point that its points are relative to, if any.
+        base: Option<u32>,
     },
     /// The extraordinary vertex at `corner`; of an edge, at the end `corner`.
     Extraordinary {
@@ -69,6 +77,37 @@ pub enum Node {
 }
 
 impl Node {
+    /// The child of a terminal node at a corner: a B-spline, or what is left around the extraordinary vertex. None of other nodes.
+    pub(super) fn child(&self, corner: u32) -> Option<Node> {
+        let Node::Terminal {
+            corner: end,
+            levels,
+            base,
+        } = self
+        else {
+            return None;
+        };
+        let (grid, rest) = levels.split_first()?;
+        if corner != *end {
+            let number = child_of_corner(corner);
+            let first = number % 2 + 5 * (number / 2);
+            return Some(Node::Regular {
+                points: std::array::from_fn(|i| grid[first + i % 4 + 5 * (i / 4)]),
+                mirrored: false,
+                base: *base,
+            });
+        }
+        Some(if rest.is_empty() {
+            Node::Extraordinary { corner }
+        } else {
+            Node::Terminal {
+                corner,
+                levels: rest.to_vec(),
+                base: *base,
+            }
+        })
+    }
+
     /// The node's kind.
     pub fn kind(&self) -> NodeKind {
         match self {
@@ -135,9 +174,13 @@ fn terminal(children: &[Tree; 4]) -> Option<Node> {
     let end = children
         .iter()
         .position(|child| !matches!(child, Tree::Leaf(Node::Regular { .. })))?;
-    let (corner, inner) = match &children[end] {
-        Tree::Leaf(Node::Extraordinary { corner }) => (*corner, Vec::new()),
-        Tree::Leaf(Node::Terminal { corner, levels }) => (*corner, levels.clone()),
+    let (corner, inner, mut base) = match &children[end] {
+        Tree::Leaf(Node::Extraordinary { corner }) => (*corner, Vec::new(), None),
+        Tree::Leaf(Node::Terminal {
+            corner,
+            levels,
+            base,
+        }) => (*corner, levels.clone(), Some(*base)),
         _ => return None,
     };
     if child_of_corner(corner) != end {
@@ -149,13 +192,23 @@ fn terminal(children: &[Tree; 4]) -> Option<Node> {
         .enumerate()
         .filter(|&(number, _)| number != end)
     {
-        let Tree::Leaf(Node::Regular { points, .. }) = child else {
+        let Tree::Leaf(Node::Regular {
+            points, base: own, ..
+        }) = child
+        else {
             return None;
         };
+        if *base.get_or_insert(*own) != *own {
+            return None;
+        }
         for (i, &point) in points.iter().enumerate() {
             grid[(i % 4 + number % 2) + 5 * (i / 4 + number / 2)] = point;
         }
     }
     let levels = std::iter::once(grid).chain(inner).collect();
-    Some(Node::Terminal { corner, levels })
+    Some(Node::Terminal {
+        corner,
+        levels,
+        base: base.flatten(),
+    })
 }

@@ -141,6 +141,7 @@ fn plan(rows: &Rows, options: PlanOptions) -> Plan {
     let stencil = |number: usize| Stencil {
         weights: rows.row(number).to_vec(),
         level: 0,
+        corner: None,
     };
     Plan {
         ring_size: rows.width(),
@@ -148,5 +149,6 @@ fn plan(rows: &Rows, options: PlanOptions) -> Plan {
         nodes: Vec::new(),
         stencils: (0..rows.len()).map(stencil).collect(),
         nearby: Default::default(),
+        strips: Default::default(),
     }
 }

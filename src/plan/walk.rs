@@ -19,6 +19,10 @@ pub struct Leaf {
     pub edge: u32,
     /// What is left of the sharpness.
     pub sharpness: f32,
+    /// The number, among the plan's stencils, of the point that its points are relative to, plus 1; 0 without one.
+    pub base: u32,
+    /// The use of the corner whose vertex that point is relative to; 0 where it is relative to the ring's first.
+    pub origin: u32,
     /// The kind of the node. [`NodeKind::Extraordinary`](crate::plan::NodeKind) has no points: no tess coordinate inside gets there.
     pub kind: u32,
 }
@@ -55,22 +59,36 @@ pub fn walk(plans: Plans, root: u32, uv: Vec2) -> Option<Leaf> {
 }
 
 fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {
-    let (kind, place, levels) = (node.kind & 15, node.kind >> 4 & 15, node.kind >> 8);
+    let (kind, place, levels) = (
+        node.kind & 15,
+        node.kind >> 4 & 15,
+        node.kind >> 8 & 255,
+    );
+    let leaf = Leaf {
+        points: node.points,
+        uv,
+        scale,
+        edge: place,
+        sharpness: node.sharpness,
+        base: node.kind >> abi::NODE_BASE_SHIFT & 15,
+        origin: node.kind >> abi::NODE_ORIGIN_SHIFT & 15,
+        kind,
+    };
     match kind {
-        abi::NODE_TERMINAL => terminal(node.points, place, levels, uv, scale),
-        _ => Leaf {
-            points: node.points,
-            uv,
-            scale,
-            edge: place,
-            sharpness: node.sharpness,
-            kind,
-        },
+        abi::NODE_TERMINAL => terminal(leaf, levels),
+        _ => leaf,
     }
 }
 
 /// The level is that of the larger distance from the extraordinary vertex: floor(-log2), read off the exponent of the float.
-fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf {
+fn terminal(leaf: Leaf, levels: u32) -> Leaf {
+    let Leaf {
+        points,
+        uv,
+        scale,
+        edge: corner,
+        ..
+    } = leaf;
     let [at_u, at_v] = sides(corner);
     let mirror = |x: f32, at: bool| if at { 1.0 - x } else { x };
     let distance = Vec2::new(mirror(uv.x, at_u), mirror(uv.y, at_v));
@@ -79,10 +97,8 @@ fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf
         return Leaf {
             points: 0,
             uv: Vec2::ZERO,
-            scale,
-            edge: corner,
-            sharpness: 0.0,
             kind: abi::NODE_EXTRAORDINARY,
+            ..leaf
         };
     }
     let grown = power_of_two(level);
@@ -95,8 +111,7 @@ fn terminal(points: u32, corner: u32, levels: u32, uv: Vec2, scale: f32) -> Leaf
         uv: 2.0 * local - Vec2::new(f32::from(x as u8), f32::from(y as u8)),
         scale: scale * grown * 2.0,
         edge: 0,
-        sharpness: 0.0,
-        kind: abi::NODE_TERMINAL,
+        ..leaf
     }
 }
 

@@ -11,6 +11,7 @@ use crate::abi;
 use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
+use crate::method::quadtree::agreement::{agreed_edges, is_flipped};
 use crate::method::quadtree::plain::{
     edge_rows, is_plain_edge, is_plain_vertex, is_turned_corner, vertex_rows,
 };
@@ -31,6 +32,9 @@ pub struct Irregular {
     pub part: Part,
     pub ring: Ring,
     pub plan: u32,
+    /// The order in which stencils of the inside are summed: places in the ring, by the vertices' numbers in the mesh. So faces add what they share in
+    /// the same order, whatever else there is in their rings.
+    pub order: Vec<u16>,
 }
 
 /// An edge of a patch that has a plan.
@@ -221,6 +225,26 @@ fn points(topology: &Topology, part: Part, turn: u32) -> [Option<Point>; 4] {
 }
 
 impl Irregular {
+    pub fn new(part: Part, ring: Ring, plan: u32) -> Irregular {
+        let mut order: Vec<u16> = (0..ring.vertices.len() as u16).collect();
+        order.sort_unstable_by_key(|&place| ring.vertices[place as usize]);
+        Irregular {
+            part,
+            ring,
+            plan,
+            order,
+        }
+    }
+
+    /// The order as it stands behind the ring in the list of control vertices: two 16-bit halves a word, the lower first.
+    pub fn order_words(&self) -> impl Iterator<Item = u32> {
+        let pairs = self.order.chunks(2);
+        pairs.map(|pair| {
+            let second = pair.get(1).copied().unwrap_or(0);
+            u32::from(pair[0]) | u32::from(second) << 16
+        })
+    }
+
     /// The corner of the quad at which the patch begins.
     pub fn turn(&self, topology: &Topology) -> u32 {
         if topology.face(self.part.face).len() == 4 {
@@ -236,15 +260,18 @@ impl Borders {
     pub fn new(
         topology: &Topology,
         patches: &[Irregular],
+        plans: &[Plan],
         packed: &mut PackedPlans,
         options: PlanOptions,
     ) -> Result<Borders> {
+        let agreed = agreed_edges(topology, patches, plans);
         let lines = patches.iter().flat_map(|patch| {
             let lines = lines(topology, patch.part, patch.turn(topology));
             lines.into_iter().map(|(line, ..)| line)
         });
-        let lines = lines
-            .filter(|&line| !matches!(line, Line::Edge(edge) if is_plain_edge(topology, edge)));
+        let lines = lines.filter(|&line| {
+            !matches!(line, Line::Edge(edge) if is_plain_edge(topology, edge) || agreed.contains(&edge))
+        });
         let lines = Shared::new(topology, lines, packed, options)?;
         let vertices = patches.iter().flat_map(|patch| {
             let points = points(topology, patch.part, patch.turn(topology));
@@ -256,6 +283,9 @@ impl Borders {
         let vertices = Shared::new(topology, vertices, packed, options)?;
         let mut builder = Builder {
             topology,
+            plans,
+            agreed: &agreed,
+            strips: FxHashMap::default(),
             lines: &lines,
             vertices: &vertices,
             packed,
@@ -280,6 +310,11 @@ impl Borders {
 /// Puts borders together.
 struct Builder<'a> {
     topology: &'a Topology,
+    /// The plans of the insides.
+    plans: &'a [Plan],
+    agreed: &'a FxHashSet<u32>,
+    /// Roots of the trees of agreed edges, by plan, edge, and whether it is flipped.
+    strips: FxHashMap<(u32, u32, bool), u32>,
     lines: &'a Shared<Line>,
     vertices: &'a Shared<Point>,
     packed: &'a mut PackedPlans,
@@ -348,6 +383,15 @@ impl Builder<'_> {
         };
         for (edge, (line, flags, corner)) in (0..).zip(lines(topology, patch.part, turn)) {
             let number = 1 + edge as usize;
+            if matches!(line, Line::Edge(edge) if self.agreed.contains(&edge)) {
+                let flipped = is_flipped(topology, patch, edge);
+                let turn = (edge + 2 * u32::from(flipped)) % 4;
+                let direction = if flipped { abi::USE_FLIPPED } else { 0 };
+                border.flags[number] =
+                    abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;
+                border.roots[number] = self.strip(patch.plan, edge, flipped);
+                continue;
+            }
             match self.lines.known.get(&line) {
                 Some((ring, plan)) => {
                     let flags = flags ^ self.line_flags(patch.part.face, corner, line, ring, *plan);
@@ -370,6 +414,9 @@ impl Builder<'_> {
         }
         for (corner, point) in (0..).zip(points(topology, patch.part, turn)) {
             let number = 5 + corner as usize;
+            // Points near a corner are relative to its vertex; near the middle of an edge, to that of the n-gon's corner.
+            let own = if point.is_some() { corner } else { 0 };
+            border.rings[number] = self.list(vec![own]);
             let Some(point) = point else { continue };
             match self.vertices.known.get(&point) {
                 Some((ring, plan)) => {
@@ -400,6 +447,25 @@ impl Builder<'_> {
         border.plain = self.list(places);
         border.ends = ends(border.plain_count, &counts);
         border
+    }
+
+    /// The root of the tree of an edge that is evaluated with the points of an inside's plan.
+    fn strip(&mut self, number: u32, edge: u32, flipped: bool) -> u32 {
+        let plan = &self.plans[number as usize];
+        let packed = &mut *self.packed;
+        let push = || {
+            let strip = plan.strips[edge as usize].as_ref();
+            let strip = strip.expect("faces agree on edges along which they have cells");
+            if flipped {
+                packed.push_strip(plan, &strip.reversed())
+            } else {
+                packed.push_strip(plan, strip)
+            }
+        };
+        *self
+            .strips
+            .entry((number, edge, flipped))
+            .or_insert_with(push)
     }
 
     /// Which side of the line the face is on, and whether it runs the other way.

@@ -10,9 +10,8 @@ use crate::method::quadtree::twin::{Use, compensated_sum};
 use crate::method::surface::{Tangents, UNIT, reach};
 
 /// Sums over a ring. Compensated, they err by some units of rounding of the absolute sum; the ring's own positions by one each.
-fn tangents(ring: &[Vec3], weights: &[f32]) -> Tangents {
+fn tangents(ring: &[Vec3], [first, second]: [&[f32]; 2]) -> Tangents {
     let origin = ring[0];
-    let (first, second) = weights.split_at(ring.len());
     let spokes = || ring.iter().map(|&point| point - origin);
     let one = |weights: &[f32]| {
         let terms = spokes().zip(weights).map(|(spoke, &weight)| weight * spoke);
@@ -68,7 +67,7 @@ impl Use<'_> {
     /// The pair of tangents whose first is stencil `number` of the use's plan.
     fn tangents(&self, vertices: &[Vec3], number: u32) -> Tangents {
         let ring = self.ring(vertices);
-        let first = self.stencil(number);
-        tangents(&ring, &self.plans.weights[first..first + 2 * ring.len()])
+        let rows = [number, number + 1].map(|number| &self.stencil(number).1[..ring.len()]);
+        tangents(&ring, rows)
     }
 }

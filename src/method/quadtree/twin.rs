@@ -10,7 +10,7 @@ use crate::method::Pass;
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::patch::bspline::{Basis, basis, basis_of};
 use crate::patch::crease::crease_basis;
-use crate::plan::{Leaf, Plans, walk};
+use crate::plan::{Plans, walk};
 
 /// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,35 +127,29 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
         ),
         Place::Corner(corner) => (5 + corner, Vec2::ZERO),
     };
+    let flags = border.flags[number as usize];
     let one_use = Use {
         pass,
         plans,
         border,
         controls,
-        number: number as usize,
+        number: if flags & abi::USE_INSIDE != 0 { 0 } else { number as usize },
     };
-    let flags = border.flags[number as usize];
-    let ring = one_use.ring(&given.vertices);
-    let origin = if one_use.has_plan() {
-        ring[0]
-    } else {
-        Vec3::ZERO
-    };
-    let local: Vec<Vec3> = ring.iter().map(|&point| point - origin).collect();
-    let side = flags >> abi::USE_SIDE_SHIFT;
     if flags & abi::USE_LIMIT != 0 {
+        let vertices = &given.vertices;
         return SurfacePoint {
-            position: one_use.point(&local, 0) + origin,
-            normal: one_use.vertex_normal(&given.vertices, flags),
+            position: one_use.point(vertices, 0) + one_use.origin(vertices),
+            normal: one_use.vertex_normal(vertices, flags),
         };
     }
-    let surface = one_use.evaluate(&local, uv, side);
+    let (root, side) = (border.roots[number as usize], flags >> abi::USE_SIDE_SHIFT);
+    let surface = one_use.evaluate(&given.vertices, root, uv, side);
     let Surface { position, du, dv } = turned(surface, flags >> abi::USE_TURN_SHIFT & 3);
     // Half of the edge is the whole patch.
     let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
     let scale = if half { 0.5 } else { 1.0 };
     let surface = Surface {
-        position: position + origin,
+        position,
         du: scale * du,
         dv: scale * dv,
     };
@@ -218,55 +212,78 @@ impl Use<'_> {
             .collect()
     }
 
-    /// Where the weights of stencil `number` of its plan begin.
-    pub(super) fn stencil(&self, number: u32) -> usize {
-        (self.border.weights[self.number] + number * self.border.sizes[self.number]) as usize
+    /// Stencil `number` of its plan: its first word, and its weights, with whatever comes behind.
+    pub(super) fn stencil(&self, number: u32) -> (u32, &[f32]) {
+        let size = self.border.sizes[self.number];
+        let start = self.border.weights[self.number] + number * (size + 1);
+        let row = &self.plans.weights[start as usize..];
+        (row[0].to_bits(), &row[1..])
+    }
+
+    /// The vertex of a corner, which points near it are relative to.
+    fn corner(&self, positions: &[Vec3], number: u32) -> Vec3 {
+        let place = self.pass.controls[self.border.rings[number as usize] as usize];
+        positions[self.pass.controls[(self.controls + place) as usize] as usize]
+    }
+
+    /// What its points are relative to where nothing else is said.
+    fn origin(&self, positions: &[Vec3]) -> Vec3 {
+        self.ring(positions)[0]
+    }
+
+    /// The order in which stencils are summed.
+    fn order(&self, i: usize) -> usize {
+        if self.number > 0 {
+            return i;
+        }
+        let size = self.border.sizes[0] as usize;
+        let word = self.pass.controls[self.controls as usize + size + i / 2];
+        (word >> (16 * (i % 2)) & 0xffff) as usize
     }
 
     /// Point `number` of its slot.
-    fn point(&self, ring: &[Vec3], number: u32) -> Vec3 {
+    fn point(&self, positions: &[Vec3], number: u32) -> Vec3 {
+        let ring = self.ring(positions);
         if !self.has_plan() {
             return ring[number as usize];
         }
-        weighted_sum(ring, &self.plans.weights[self.stencil(number)..])
+        let (origin, weights) = self.stencil(number);
+        let origin = match origin {
+            abi::STENCIL_OWN => ring[0],
+            corner => self.corner(positions, corner),
+        };
+        let places = (0..ring.len()).map(|i| self.order(i));
+        let terms = places.map(|place| weights[place] * (ring[place] - origin));
+        weighted_sum(ring.len(), terms)
     }
 
-    fn evaluate(&self, ring: &[Vec3], uv: Vec2, side: u32) -> Surface {
-        let quarter = u32::from(uv.x >= 0.5) + 2 * u32::from(uv.y >= 0.5);
-        let leaf = walk(self.plans, self.border.roots[self.number], uv);
+    fn evaluate(&self, positions: &[Vec3], root: u32, uv: Vec2, side: u32) -> Surface {
+        let leaf = walk(self.plans, root, uv);
         let leaf = leaf.expect("borders have the roots of packed trees");
-        let Leaf {
-            points,
-            uv,
-            scale,
-            edge,
-            sharpness,
-            kind,
-        } = leaf;
-        let (u, mut v) = creased(uv, edge, sharpness);
-        if kind == abi::NODE_CURVE {
+        let (u, mut v) = creased(leaf.uv, leaf.edge, leaf.sharpness);
+        if leaf.kind == abi::NODE_CURVE {
             v = CURVE;
         }
-        let points = points + 16 * side;
-        let surface = bspline(u, v, scale, |x, y| {
+        let points = leaf.points + 16 * side;
+        let surface = bspline(u, v, leaf.scale, |x, y| {
             let number = self.plans.point(points + x as u32 + 4 * y as u32);
-            self.point(ring, number.expect("leaves have their points"))
+            self.point(positions, number.expect("leaves have their points"))
         });
-        let base = if scale >= RELATIVE {
-            self.point(ring, quarter)
-        } else {
-            Vec3::ZERO
+        let base = match leaf.base {
+            0 => Vec3::ZERO,
+            number => self.point(positions, number - 1),
+        };
+        let origin = match leaf.origin {
+            0 => self.origin(positions),
+            abi::ORIGIN_NONE => Vec3::ZERO,
+            corner => self.corner(positions, corner),
         };
         Surface {
-            position: surface.position + base,
+            position: (surface.position + base) + origin,
             ..surface
         }
     }
 }
-
-/// From this scale on, which is that of depth 2, points are relative to the one of their plan's first points that has the number of their quarter of
-/// the tree (`plan/base.rs`).
-const RELATIVE: f32 = 4.0;
 
 /// Row 1 is the position on an edge, row 2 that plus the derivative across.
 const CURVE: Basis<f32> = Basis {
@@ -274,14 +291,10 @@ const CURVE: Basis<f32> = Basis {
     derivative: [0.0, -1.0, 1.0, 0.0],
 };
 
-/// The sum of weighted points, in the order and the manner of the control shader: rings of more than 32 vertices are summed with
-/// compensation (Kahan 1965), since where hundreds of faces meet, the tangents of neighbours differ by less than a plain sum would lose.
-fn weighted_sum(points: &[Vec3], weights: &[f32]) -> Vec3 {
-    let terms = points
-        .iter()
-        .zip(weights)
-        .map(|(&point, &weight)| weight * point);
-    if points.len() <= abi::CONTROL_INVOCATIONS as usize {
+/// The sum of weighted points, in the manner of the control shader: rings of more than 32 vertices are summed with compensation (Kahan 1965), since
+/// where hundreds of faces meet, the tangents of neighbours differ by less than a plain sum would lose.
+fn weighted_sum(ring: usize, terms: impl Iterator<Item = Vec3>) -> Vec3 {
+    if ring <= abi::CONTROL_INVOCATIONS as usize {
         return terms.fold(Vec3::ZERO, |sum, term| sum + term);
     }
     compensated_sum(terms)

@@ -1,0 +1,207 @@
+//! A face's cells along one of its edges, with the points that the edge is evaluated with.
+//!
+//! On an edge a B-spline is a sum of three rows of control points, those on the edge and those beside it. Where the faces on both sides have the
+//! same cells along it, and the same points in these, both can evaluate the edge with their own points, and need no others.
+
+use std::collections::VecDeque;
+
+use crate::plan::span::Span;
+use crate::plan::tree::{Node, child_of_corner};
+
+/// What is evaluated on a stretch of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Crease {
+    /// A B-spline.
+    None,
+    /// One with a semi-sharp crease along the edge.
+    Along(f32),
+    /// One with a semi-sharp crease across the stretch's beginning (0) or end (1).
+    Across(u32, f32),
+}
+
+/// A stretch of an edge: from `at` / 2^`depth` to one more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// How often the edge is halved.
+    pub depth: u32,
+    /// Which of the halves' halves it is.
+    pub at: u32,
+    /// Control points, four along the edge in each of the rows outside, on the edge and inside. None where the edge ends in an extraordinary vertex.
+    pub points: Option<[[u32; 4]; 3]>,
+    /// The crease.
+    pub crease: Crease,
+    /// The point that the control points are relative to.
+    pub base: u32,
+}
+
+impl Stretch {
+    /// Which coordinates along the edge fall into it.
+    pub(super) fn span(&self) -> Span {
+        let mut span = Span::WHOLE;
+        for bit in (0..self.depth).rev() {
+            span = span.split(span.interior_half_is_upper())[(self.at >> bit & 1) as usize];
+        }
+        span
+    }
+
+    /// The B-spline, along whose v = 0 the stretch is. Row 3 has no weight there.
+    fn node(&self) -> Node {
+        let Some([outside, on, inside]) = self.points else {
+            return Node::Extraordinary {
+                corner: u32::from(self.at > 0),
+            };
+        };
+        let points = [outside, on, inside, on].concat();
+        let points = points.try_into().expect("four rows of four");
+        let base = Some(self.base);
+        match self.crease {
+            Crease::None => Node::Regular {
+                points,
+                mirrored: false,
+                base,
+            },
+            Crease::Along(sharpness) => Node::Crease {
+                points,
+                edge: 0,
+                sharpness,
+                base,
+            },
+            Crease::Across(end, sharpness) => Node::Crease {
+                points,
+                edge: [3, 1][end as usize],
+                sharpness,
+                base,
+            },
+        }
+    }
+
+    /// The same seen from the edge's other side and end.
+    fn reversed(&self) -> Stretch {
+        let turned = |[outside, on, inside]: [[u32; 4]; 3]| {
+            [inside, on, outside].map(|mut row| {
+                row.reverse();
+                row
+            })
+        };
+        Stretch {
+            at: (1 << self.depth) - 1 - self.at,
+            points: self.points.map(turned),
+            crease: match self.crease {
+                Crease::Across(end, sharpness) => Crease::Across(1 - end, sharpness),
+                crease => crease,
+            },
+            ..*self
+        }
+    }
+}
+
+/// The stretches of an edge from its first corner on, the face's inside to their left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strip(Vec<Stretch>);
+
+impl Strip {
+    /// The cells of a tree along edge 0..=3, which runs from the corner of this number to the next. None where the face is one cell: its points are
+    /// relative to nothing that both sides of the edge have.
+    pub(super) fn of(nodes: &[Node], edge: u32) -> Option<Strip> {
+        let mut stretches = Vec::new();
+        let whole = nodes.first()?.clone();
+        collect(nodes, &whole, edge, (0, 0), &mut stretches)?;
+        Some(Strip(stretches))
+    }
+
+    /// In the order along the edge.
+    pub fn stretches(&self) -> impl Iterator<Item = &Stretch> {
+        self.0.iter()
+    }
+
+    /// The tree of the edge, of which inner nodes have two children, in breadth-first order.
+    pub(super) fn nodes(&self) -> Vec<Node> {
+        let mut nodes = Vec::new();
+        let mut queue = VecDeque::from([(0, 0)]);
+        let mut next = 1;
+        while let Some((depth, at)) = queue.pop_front() {
+            let own = |stretch: &&Stretch| (stretch.depth, stretch.at) == (depth, at);
+            match self.stretches().find(own) {
+                Some(stretch) => nodes.push(stretch.node()),
+                None => {
+                    nodes.push(Node::Internal { children: next });
+                    next += 2;
+                    queue.extend([(depth + 1, 2 * at), (depth + 1, 2 * at + 1)]);
+                }
+            }
+        }
+        nodes
+    }
+
+    /// The same seen from the edge's other side and end.
+    pub fn reversed(&self) -> Strip {
+        Strip(self.0.iter().rev().map(Stretch::reversed).collect())
+    }
+}
+
+fn collect(
+    nodes: &[Node],
+    node: &Node,
+    edge: u32,
+    (depth, at): (u32, u32),
+    found: &mut Vec<Stretch>,
+) -> Option<()> {
+    let ends = [edge, (edge + 1) % 4];
+    let (points, crease, base) = match node {
+        Node::Internal { children } => {
+            for (half, corner) in (0..).zip(ends) {
+                let child = &nodes[*children as usize + child_of_corner(corner)];
+                collect(nodes, child, edge, (depth + 1, 2 * at + half), found)?;
+            }
+            return Some(());
+        }
+        Node::Terminal { .. } => {
+            for (half, corner) in (0..).zip(ends) {
+                let child = node.child(corner)?;
+                collect(nodes, &child, edge, (depth + 1, 2 * at + half), found)?;
+            }
+            return Some(());
+        }
+        Node::Extraordinary { .. } => (None, Crease::None, 0),
+        Node::Regular { points, base, .. } => (Some(points), Crease::None, (*base)?),
+        Node::Crease {
+            points,
+            edge: creased,
+            sharpness,
+            base,
+        } => {
+            let crease = match (creased + 4 - edge) % 4 {
+                0 => Crease::Along(*sharpness),
+                1 => Crease::Across(1, *sharpness),
+                3 => Crease::Across(0, *sharpness),
+                // Across the face nothing is left of it.
+                _ => Crease::None,
+            };
+            (Some(points), crease, (*base)?)
+        }
+        Node::Curve { .. } => return None,
+    };
+    found.push(Stretch {
+        depth,
+        at,
+        points: points.map(|points| rows(points, edge)),
+        crease,
+        base,
+    });
+    Some(())
+}
+
+/// The three rows beside an edge of a B-spline.
+fn rows(points: &[u32; 16], edge: u32) -> [[u32; 4]; 3] {
+    [0, 1, 2].map(|y| {
+        [0, 1, 2, 3].map(|x| {
+            let [x, y] = match edge {
+                0 => [x, y],
+                1 => [3 - y, x],
+                2 => [3 - x, 3 - y],
+                _ => [y, 3 - x],
+            };
+            points[x + 4 * y]
+        })
+    })
+}

@@ -360,7 +360,10 @@ fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
 
 /// Lowers the levels of the stencils of a stretch to the first level at which a tess coordinate on the edge falls into it.
 fn require_stretch(stretch: &Stretch, deepest: u32, levels: &mut [u32]) {
-    let level = stretch.span().required_level(deepest);
+    // The middle of an edge is in the half behind it, of whichever direction the edge has.
+    let spans = [stretch.span(), stretch.reversed().span()];
+    let level = spans.map(|span| span.required_level(deepest));
+    let level = level[0].min(level[1]);
     for &point in stretch.points.iter().flatten().flatten() {
         let known = &mut levels[point as usize];
         *known = level.min(*known);

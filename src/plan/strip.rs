@@ -76,7 +76,7 @@ impl Stretch {
     }
 
     /// The same seen from the edge's other side and end.
-    fn reversed(&self) -> Stretch {
+    pub(super) fn reversed(&self) -> Stretch {
         let turned = |[outside, on, inside]: [[u32; 4]; 3]| {
             [inside, on, outside].map(|mut row| {
                 row.reverse();

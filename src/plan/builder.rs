@@ -9,7 +9,7 @@ use crate::plan::level::Level;
 use crate::plan::nearby;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
-use crate::plan::strip::{Strip, Stretch};
+use crate::plan::strip::{self, Stretch, Strip};
 use crate::plan::tree::{Node, Tree, child_of_corner};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, limit_stencil};
 
@@ -98,11 +98,13 @@ impl Plan {
             rows: bases.rows(base.rows.width()),
             bases,
             numbers: FxHashMap::default(),
+            halves: Vec::new(),
         };
         let tree = builder.grow(&base).fold();
         let Builder {
             mut rows,
             mut bases,
+            halves,
             ..
         } = builder;
         let mut levels = vec![options.max_level; rows.len()];
@@ -114,10 +116,15 @@ impl Plan {
             &mut levels,
         );
         let nodes = tree.flatten();
-        let strips = match configuration.arity() {
+        let mut strips = match configuration.arity() {
             4 => [0, 1, 2, 3].map(|edge| Strip::of(&nodes, edge)),
             _ => Default::default(),
         };
+        for half in halves {
+            if let Some(strip) = &mut strips[half.edge as usize] {
+                strip.replace(half.half, half.points, half.base);
+            }
+        }
         for stretch in strips.iter().flatten().flat_map(Strip::stretches) {
             require_stretch(stretch, options.max_level, &mut levels);
         }
@@ -125,10 +132,8 @@ impl Plan {
             bases.found(corner, &limit_row(&base, corner));
         }
         bases.apply(&mut rows, &mut levels);
-        let mut plan = sorted(nodes, &rows, &levels, &bases.of_rows(), options.max_level);
-        if configuration.arity() == 4 {
-            plan.strips = [0, 1, 2, 3].map(|edge| Strip::of(&plan.nodes, edge));
-        }
+        let corners = bases.of_rows();
+        let plan = sorted(nodes, strips, &rows, &levels, &corners, options.max_level);
         Ok(Plan { nearby, ..plan })
     }
 
@@ -186,6 +191,15 @@ struct Builder {
     bases: Bases,
     /// The rows of this level's control points, for each base that they are relative to.
     numbers: FxHashMap<(Option<u32>, ControlPoint), u32>,
+    halves: Vec<Half>,
+}
+
+/// A half of an edge that is a single stretch, whose points are not relative to what those of its cell are.
+struct Half {
+    edge: u32,
+    half: u32,
+    points: [[u32; 4]; 3],
+    base: u32,
 }
 
 /// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
@@ -211,6 +225,7 @@ impl Builder {
                 .collect();
             if depth == 1 {
                 rebase(&mut cells, &leaves);
+                self.halves = self.halves(&level, &cells, &leaves);
             }
             let mut next = Vec::new();
             let mut parents = Vec::new();
@@ -274,13 +289,42 @@ impl Builder {
         }
     }
 
+    /// The halves of edges that need points of their own, so that both sides of an edge can evaluate it alike: what a half's points are relative to is up
+    /// to the edge alone. It is the limit at the half's end, or, where the surface is regular there but not at the other, at that one: so they are those
+    /// of a terminal node around it.
+    fn halves(&mut self, level: &Level, quarters: &[Cell], leaves: &[Option<Leaf>]) -> Vec<Half> {
+        let mut found = Vec::new();
+        for (edge, half) in (0..4).flat_map(|edge| [(edge, 0), (edge, 1)]) {
+            let [own, other] = [half, 1 - half].map(|half| (edge + half) % 4);
+            let Some(Leaf::Spline(patch)) = &leaves[own as usize] else {
+                continue;
+            };
+            let is_spline = matches!(leaves[other as usize], Some(Leaf::Spline(_)));
+            let base = if is_spline { own } else { other };
+            if quarters[own as usize].base == Some(base) {
+                continue;
+            }
+            let rows = strip::rows(&patch.points, edge);
+            let points = rows.map(|row| row.map(|point| self.point(level, point, Some(base))));
+            found.push(Half {
+                edge,
+                half,
+                points,
+                base,
+            });
+        }
+        found
+    }
+
     fn points(&mut self, level: &Level, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
-        patch.points.map(|point| {
-            *self.numbers.entry((base, point)).or_insert_with(|| {
-                self.rows.push(&point.mask(), &level.rows);
-                self.bases.pushed(base);
-                self.rows.len() as u32 - 1
-            })
+        patch.points.map(|point| self.point(level, point, base))
+    }
+
+    fn point(&mut self, level: &Level, point: ControlPoint, base: Option<u32>) -> u32 {
+        *self.numbers.entry((base, point)).or_insert_with(|| {
+            self.rows.push(&point.mask(), &level.rows);
+            self.bases.pushed(base);
+            self.rows.len() as u32 - 1
         })
     }
 }
@@ -376,6 +420,7 @@ const LEAST: f64 = 1e-13;
 /// Sorts the stencils by level, leaves out those that nothing uses, and renumbers the points of the nodes. Bases are named by their rows.
 pub(super) fn sorted(
     mut nodes: Vec<Node>,
+    mut strips: [Option<Strip>; 4],
     rows: &Rows,
     levels: &[u32],
     corners: &[Option<u32>],
@@ -410,6 +455,9 @@ pub(super) fn sorted(
             Node::Internal { .. } | Node::Extraordinary { .. } => {}
         }
     }
+    for number in strips.iter_mut().flatten().flat_map(Strip::numbers) {
+        *number = place[*number as usize];
+    }
     let weights = |row: &[f64]| {
         row.iter()
             .map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight })
@@ -422,7 +470,7 @@ pub(super) fn sorted(
     });
     Plan {
         nearby: Default::default(),
-        strips: Default::default(),
+        strips,
         ring_size: rows.width(),
         max_level,
         nodes,

@@ -116,7 +116,14 @@ impl EdgePlan {
         bases.apply(&mut rows, &mut levels);
         let nodes = flatten(branch);
         Ok(EdgePlan {
-            plan: sorted(nodes, &rows, &levels, &vec![None; rows.len()], options.max_level),
+            plan: sorted(
+                nodes,
+                Default::default(),
+                &rows,
+                &levels,
+                &vec![None; rows.len()],
+                options.max_level,
+            ),
             sides: if sharp { sides } else { Vec::new() },
         })
     }

@@ -109,6 +109,23 @@ impl Strip {
         Some(Strip(stretches))
     }
 
+    /// Replaces what a half of the edge is evaluated with.
+    pub(super) fn replace(&mut self, half: u32, points: [[u32; 4]; 3], base: u32) {
+        let halves = self.0.iter_mut().filter(|stretch| stretch.depth == 1);
+        for stretch in halves.filter(|stretch| stretch.at == half) {
+            (stretch.points, stretch.base) = (Some(points), base);
+        }
+    }
+
+    /// The numbers of points, for writing.
+    pub(super) fn numbers(&mut self) -> impl Iterator<Item = &mut u32> {
+        self.0.iter_mut().flat_map(|stretch| {
+            let points = stretch.points.as_mut();
+            let base = points.is_some().then_some(&mut stretch.base);
+            points.into_iter().flatten().flatten().chain(base)
+        })
+    }
+
     /// In the order along the edge.
     pub fn stretches(&self) -> impl Iterator<Item = &Stretch> {
         self.0.iter()
@@ -192,7 +209,7 @@ fn collect(
 }
 
 /// The three rows beside an edge of a B-spline.
-fn rows(points: &[u32; 16], edge: u32) -> [[u32; 4]; 3] {
+pub(super) fn rows<T: Copy>(points: &[T; 16], edge: u32) -> [[T; 4]; 3] {
     [0, 1, 2].map(|y| {
         [0, 1, 2, 3].map(|x| {
             let [x, y] = match edge {

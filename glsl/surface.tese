@@ -20,9 +20,10 @@ layout(location = 1) patch in uint in_slot;
 #else
 #define in_slot slot_of(in_patch)
 #endif
+layout(location = 3) patch in uint in_view;
 
 void main() {
     Patch record = patch_record(in_patch);
     vec2 uv = shared_coordinates(record, patch_levels(in_patch, record), gl_TessCoord);
-    write_vertex(record, in_patch, uv, evaluate_patch(record, in_slot, uv));
+    write_vertex(record, in_patch, in_view, uv, evaluate_patch(record, in_slot, uv));
 }

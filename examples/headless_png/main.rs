@@ -178,7 +178,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     picture.begin(cmd);
     for batch in list.batches() {
         // SAFETY: in subpass 0 of the pipelines' render pass, which depends on itself as it must; the batches come in their order.
-        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, 0, batch)? };
+        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, 0..1, batch)? };
     }
     // Your other objects can be drawn here: bind their pipelines and descriptor sets again, `cmd_draw` has bound its own.
     picture.end(cmd);

@@ -60,6 +60,20 @@ pub enum Misuse {
         /// How many there are.
         views: u32,
     },
+    /// Several views in one draw of a batch that uses the ring. There each view's control points are computed again, into slots of their own, so
+    /// nothing is gained by it: a round a view, or a cache.
+    #[error(
+        "several views in one draw need their control points in a cache; in the ring each view has a round of its own"
+    )]
+    ViewsInRing,
+    /// Views and patches whose numbers do not go into the one that fragment shaders are told.
+    #[error("views up to {views} of {patches} patches: the product has to be below 2^32")]
+    ManyViews {
+        /// The number behind the last view.
+        views: u32,
+        /// The number behind the last patch.
+        patches: u32,
+    },
     /// What was prepared is another mesh's.
     #[error("what was prepared is of another mesh: faces, tags or scheme differ")]
     OtherMesh,

@@ -1,5 +1,7 @@
 //! Recording the draws of a batch.
 
+use std::ops::Range;
+
 use ash::vk;
 
 use crate::abi;
@@ -24,14 +26,19 @@ pub struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Records the draw of a batch, seen with a view of those that [`cmd_prepare`](FrameSlot::cmd_prepare) was given, from 0. A batch that uses
-    /// the ring after another waits for that one's evaluation shaders.
+    /// Records the draw of a batch, seen with each of a range of the views that [`cmd_prepare`](FrameSlot::cmd_prepare) was given, from 0: rigid instances
+    /// of a pose are views of it, and all of them are one draw (one a refinement pattern, where patterns are drawn). No views, no draw. A batch that
+    /// uses the ring takes one view at a time, each in a [round](super::DrawList::round) of its own, and waits for the evaluation shaders of the batch
+    /// before it.
+    ///
+    /// Fragment shaders are told patch and view in one number (`drawn_patch` and `drawn_view` in `glsl/lib/interface.glsl`).
     ///
     /// Binds a pipeline and sets 0 to 2, and pushes constants from offset 0: an engine binds its own again afterwards.
     ///
     /// # Errors
     /// [`Misuse::OtherSurface`](crate::Misuse::OtherSurface), [`Misuse::NotWritten`](crate::Misuse::NotWritten),
-    /// [`Misuse::View`](crate::Misuse::View), [`Misuse::NotCached`](crate::Misuse::NotCached) and [`Misuse::OtherPipelines`](crate::Misuse::OtherPipelines); nothing has been recorded then.
+    /// [`Misuse::View`](crate::Misuse::View), [`Misuse::ViewsInRing`](crate::Misuse::ViewsInRing),
+    /// [`Misuse::ManyViews`](crate::Misuse::ManyViews), [`Misuse::NotCached`](crate::Misuse::NotCached) and [`Misuse::OtherPipelines`](crate::Misuse::OtherPipelines); nothing has been recorded then.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made all of this, after `cmd_upload` of tables and pose and
@@ -46,16 +53,19 @@ impl Drawing<'_> {
         cmd: vk::CommandBuffer,
         layout: &Layout,
         pipelines: &Pipelines,
-        view: u32,
+        views: Range<u32>,
         batch: Batch<'_>,
     ) -> Result<()> {
         let Drawing { tables, pose, slot } = *self;
         pose.check(tables)?;
         slot.check_list(tables, batch.list())?;
-        slot.check_view(view)?;
+        slot.check_views(&views, batch)?;
         pose.check_cached(batch.list())?;
         let pass = batch.pass();
         let pipeline = pipelines.for_pass(tables.prepared(), batch.list(), pass)?;
+        if views.is_empty() {
+            return Ok(());
+        }
         let graphics = vk::PipelineBindPoint::GRAPHICS;
         let sets = [tables.set(pass), pose.set(), slot.set(pass)];
         // SAFETY: this function's contract.
@@ -69,10 +79,13 @@ impl Drawing<'_> {
                 device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16);
             }
         }
-        let mut frame = self.frame(view, batch);
         for draw in batch.draws() {
+            let frame = self.frame(views.start, batch, draw);
             // SAFETY: as above; the list's patterns are those that were written last.
-            unsafe { self.cmd_draw_one(device, cmd, layout, &mut frame, batch, draw) };
+            unsafe {
+                cmd_push(device, cmd, layout, &frame);
+                self.cmd_draw_one(device, cmd, views.len() as u32, batch, draw);
+            }
         }
         Ok(())
     }
@@ -84,67 +97,68 @@ impl Drawing<'_> {
     }
 
     /// # Safety
-    /// As [`cmd_draw`](Self::cmd_draw), with pipeline, sets and indices bound.
+    /// As [`cmd_draw`](Self::cmd_draw), with pipeline, sets and indices bound, and the draw's constants pushed.
     unsafe fn cmd_draw_one(
         &self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
-        layout: &Layout,
-        frame: &mut abi::Frame,
+        views: u32,
         batch: Batch<'_>,
         draw: &Draw,
     ) {
         match *draw {
             Draw::Patches {
-                first,
                 per_instance,
                 instances,
+                ..
             } => {
-                (frame.first_patch, frame.patches_per_instance) = (first, per_instance);
                 let pass = &self.tables.prepared().passes[batch.pass()];
                 let vertices = self.slot.vertices_of(pass, per_instance);
                 // SAFETY: this function's contract.
-                unsafe {
-                    cmd_push(device, cmd, layout, frame);
-                    device.cmd_draw(cmd, vertices, instances, 0, 0);
-                }
+                unsafe { device.cmd_draw(cmd, vertices, instances * views, 0, 0) };
             }
             Draw::Pattern {
-                pattern,
-                first_instance,
-                instances,
-                segments,
+                pattern, instances, ..
             } => {
-                frame.segments = segments;
                 let indices = self.slot.patterns().place(pattern);
-                let count = indices.len() as u32;
+                let (count, first) = (indices.len() as u32, indices.start);
                 // SAFETY: this function's contract.
-                unsafe {
-                    cmd_push(device, cmd, layout, frame);
-                    let first = indices.start;
-                    device.cmd_draw_indexed(cmd, count, instances, first, 0, first_instance);
-                }
+                unsafe { device.cmd_draw_indexed(cmd, count, instances * views, first, 0, 0) };
             }
         }
     }
 
-    /// The constants of a batch, its draws aside.
-    fn frame(&self, view: u32, batch: Batch<'_>) -> abi::Frame {
+    /// The constants of a draw of a batch.
+    fn frame(&self, view: u32, batch: Batch<'_>, draw: &Draw) -> abi::Frame {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         let (prepared, cut) = (self.tables.prepared(), batch.list().cut());
         let max_level = prepared.passes[batch.pass()].max_level;
         let fractional_even = cut.spacing == Spacing::FractionalEven;
+        let (first, per_instance, instances, segments) = match *draw {
+            Draw::Patches {
+                first,
+                per_instance,
+                instances,
+            } => (first, per_instance, instances, 0),
+            Draw::Pattern {
+                first_instance,
+                instances,
+                segments,
+                ..
+            } => (first_instance, 1, instances, segments),
+        };
         abi::Frame {
             // As the CPU has it, whatever the pass: control shaders compute the points that this level needs.
             level: cut.spacing.clamp(cut.level, max_level),
             flags: self.slot.flags()
                 | flag(fractional_even, abi::FRAME_FRACTIONAL_EVEN)
-                | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE),
-            first_patch: batch.patches().start,
+                | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
+                | segments << abi::FRAME_SEGMENTS_SHIFT,
+            first_patch: first,
             end_patch: batch.patches().end,
-            patches_per_instance: 0,
+            patches_per_instance: per_instance,
             counter: abi::COUNTER_BATCHES + batch.ring_batch(),
-            segments: 0,
+            instances,
             view,
         }
     }

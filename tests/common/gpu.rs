@@ -355,7 +355,7 @@ impl Loaded<'_> {
             for (round, &(pipelines, _)) in (0..).zip(all) {
                 for batch in list.round(round)? {
                     let (surface, layout) = (self.surface(), gpu.layout());
-                    surface.cmd_draw(device, cmd, layout, pipelines, round, batch)?;
+                    surface.cmd_draw(device, cmd, layout, pipelines, round..round + 1, batch)?;
                 }
             }
             gpu.target().end(cmd);
@@ -384,7 +384,7 @@ impl Loaded<'_> {
                 }
                 let layout = self.gpu.layout();
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0..1, batch)?;
             }
         }
         Ok(())

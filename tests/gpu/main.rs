@@ -10,6 +10,7 @@ mod backends;
 mod cache;
 mod edges;
 mod hexagon;
+mod instances;
 mod lifetimes;
 mod misuse;
 mod points;

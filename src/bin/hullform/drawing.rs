@@ -274,7 +274,7 @@ impl<'a> Drawing<'a> {
             // SAFETY: this function's contract.
             unsafe {
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0..1, batch)?;
             }
         }
         Ok(())

@@ -133,6 +133,8 @@ const uint FRAME_ADAPTIVE = 16u;
 const uint FRAME_COUNT = 32u;
 // Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
 const uint FRAME_SEGMENTS_SHIFT = 8u;
+// Frame flag: views an instance, 1 but with multiview; six bits.
+const uint FRAME_EYES_SHIFT = 16u;
 // The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
 const uint PATTERN_SHIFT = 7u;
 // Rows of a patch's lattice that the geometry shader can make: one an invocation.

@@ -15,6 +15,6 @@ void main() {
     fit_patch(record);
     uint index = uint(gl_VertexIndex);
     uvec2 place = uvec2(index & ((1u << PATTERN_SHIFT) - 1u), index >> PATTERN_SHIFT);
-    vec2 uv = lattice_uv(place, frame.flags >> FRAME_SEGMENTS_SHIFT);
+    vec2 uv = lattice_uv(place, frame.flags >> FRAME_SEGMENTS_SHIFT & 127u);
     write_vertex(record, number, instance_view(), uv, evaluate_patch(record, slot_of(number), uv));
 }

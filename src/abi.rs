@@ -248,6 +248,8 @@ constants! {
     FRAME_COUNT = 32;
     /// Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
     FRAME_SEGMENTS_SHIFT = 8;
+    /// Frame flag: views an instance, 1 but with multiview; six bits.
+    FRAME_EYES_SHIFT = 16;
 
     /// The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
     PATTERN_SHIFT = 7;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use ash::vk;
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Draw, DrawList};
 use crate::gpu::ring::cmd_ring_barrier;
 use crate::gpu::sets::STAGES;
@@ -23,6 +23,8 @@ pub struct Drawing<'a> {
     pub pose: &'a Pose,
     /// What the frame writes.
     pub slot: &'a FrameSlot,
+    /// The engine's own sets, bound from 3 on; for pipelines with a layout of the engine's own.
+    pub sets: &'a [vk::DescriptorSet],
 }
 
 impl Drawing<'_> {
@@ -33,18 +35,20 @@ impl Drawing<'_> {
     ///
     /// Fragment shaders are told patch and view in one number (`drawn_patch` and `drawn_view` in `glsl/lib/interface.glsl`).
     ///
-    /// Binds a pipeline and sets 0 to 2, and pushes constants from offset 0: an engine binds its own again afterwards.
+    /// Binds a pipeline and sets 0 to 2, and [`sets`](Self::sets) from 3 on, and pushes constants from offset 0: an engine binds its own again
+    /// afterwards.
     ///
     /// # Errors
-    /// [`Misuse::OtherSurface`](crate::Misuse::OtherSurface), [`Misuse::NotWritten`](crate::Misuse::NotWritten),
-    /// [`Misuse::View`](crate::Misuse::View), [`Misuse::ViewsInRing`](crate::Misuse::ViewsInRing),
-    /// [`Misuse::ManyViews`](crate::Misuse::ManyViews), [`Misuse::NotCached`](crate::Misuse::NotCached) and [`Misuse::OtherPipelines`](crate::Misuse::OtherPipelines); nothing has been recorded then.
+    /// [`Misuse::OtherSurface`], [`Misuse::NotWritten`],
+    /// [`Misuse::View`], [`Misuse::ViewsInRing`],
+    /// [`Misuse::ManyViews`], [`Misuse::Eyes`], [`Misuse::NotCached`], [`Misuse::OtherPipelines`], [`Misuse::BarrierInRendering`] and
+    /// [`Misuse::OwnSets`]; nothing has been recorded then.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made all of this, after `cmd_upload` of tables and pose and
-    /// [`cmd_prepare`](FrameSlot::cmd_prepare) (of this frame), inside subpass 0 of a render pass that is compatible with that of `pipelines`
-    /// and whose subpass declares [`ring_dependency`](super::ring::ring_dependency), or, without
-    /// [`barriers`](super::SurfaceOptions::barriers), inside any rendering that suits `pipelines`. Viewport and scissor are set. `layout` is the
+    /// `cmd` is recording on `device`, which made all of this, a primary or a secondary command buffer, after `cmd_upload` of tables and pose and
+    /// [`cmd_prepare`](FrameSlot::cmd_prepare) (of this frame), inside rendering that suits `pipelines`: dynamic, or the subpass of a render
+    /// pass that is compatible with theirs. Where batches wait for one another, and record the barriers for it
+    /// ([`barriers`](super::SurfaceOptions::barriers)), that subpass declares [`ring_dependency`](super::ring::ring_dependency). Viewport and scissor are set. `layout` is the
     /// one that made `pipelines` and all of this. Each batch of each [round](super::DrawList::round) is recorded at most once after
     /// `cmd_prepare`, in their order. Everything lives until the commands have been executed.
     pub unsafe fn cmd_draw(
@@ -56,38 +60,84 @@ impl Drawing<'_> {
         views: Range<u32>,
         batch: Batch<'_>,
     ) -> Result<()> {
-        let Drawing { tables, pose, slot } = *self;
-        pose.check(tables)?;
-        slot.check_list(tables, batch.list())?;
-        slot.check_views(&views, batch)?;
-        pose.check_cached(batch.list())?;
-        let pass = batch.pass();
-        let pipeline = pipelines.for_pass(tables.prepared(), batch.list(), pass)?;
+        let pipeline = self.check(pipelines, &views, batch)?;
         if views.is_empty() {
             return Ok(());
         }
+        let instances = views.len() as u32 / pipelines.eyes();
+        let constants = Constants {
+            layout: pipelines.layout().unwrap_or(layout.pipeline()),
+            eyes: pipelines.eyes(),
+        };
+        // SAFETY: this function's contract.
+        unsafe { self.cmd_bind(device, cmd, constants.layout, pipeline, batch) };
+        for draw in batch.draws() {
+            let frame = self.frame(constants.eyes, views.start, batch, draw);
+            // SAFETY: as above; the list's patterns are those that were written last.
+            unsafe {
+                constants.cmd_push(device, cmd, &frame);
+                self.cmd_draw_one(device, cmd, instances, batch, draw);
+            }
+        }
+        Ok(())
+    }
+
+    /// The pipeline of a batch, if it may be drawn with these views now.
+    ///
+    /// # Errors
+    /// As [`cmd_draw`](Self::cmd_draw).
+    pub(super) fn check(
+        &self,
+        pipelines: &Pipelines,
+        views: &Range<u32>,
+        batch: Batch<'_>,
+    ) -> Result<vk::Pipeline> {
+        let Drawing {
+            tables, pose, slot, ..
+        } = *self;
+        pose.check(tables)?;
+        slot.check_list(tables, batch.list())?;
+        slot.check_views(views, batch)?;
+        pose.check_cached(batch.list())?;
+        let (count, eyes) = (views.len() as u32, pipelines.eyes());
+        if count % eyes != 0 {
+            let views = count;
+            return Err(Error::Misuse(Misuse::Eyes { views, eyes }));
+        }
+        if pipelines.are_dynamic() && batch.waits() && slot.options().barriers {
+            return Err(Error::Misuse(Misuse::BarrierInRendering));
+        }
+        if !self.sets.is_empty() && pipelines.layout().is_none() {
+            return Err(Error::Misuse(Misuse::OwnSets));
+        }
+        pipelines.for_pass(tables.prepared(), batch.list(), batch.pass())
+    }
+
+    /// # Safety
+    /// As [`cmd_draw`](Self::cmd_draw); the layout is the pipeline's.
+    pub(super) unsafe fn cmd_bind(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: vk::PipelineLayout,
+        pipeline: vk::Pipeline,
+        batch: Batch<'_>,
+    ) {
+        let (slot, pass) = (self.slot, batch.pass());
         let graphics = vk::PipelineBindPoint::GRAPHICS;
-        let sets = [tables.set(pass), pose.set(), slot.set(pass)];
+        let ours = [self.tables.set(pass), self.pose.set(), slot.set(pass)];
+        let sets = [&ours, self.sets].concat();
         // SAFETY: this function's contract.
         unsafe {
             if batch.waits() && slot.options().barriers {
                 cmd_ring_barrier(device, cmd);
             }
             device.cmd_bind_pipeline(cmd, graphics, pipeline);
-            device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
+            device.cmd_bind_descriptor_sets(cmd, graphics, layout, 0, &sets, &[]);
             if let Some(indices) = slot.patterns().buffer() {
                 device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16);
             }
         }
-        for draw in batch.draws() {
-            let frame = self.frame(views.start, batch, draw);
-            // SAFETY: as above; the list's patterns are those that were written last.
-            unsafe {
-                cmd_push(device, cmd, layout, &frame);
-                self.cmd_draw_one(device, cmd, views.len() as u32, batch, draw);
-            }
-        }
-        Ok(())
     }
 
     /// Whether the pose has all control points that a list is drawn with, so that [`cmd_cache`](Pose::cmd_cache) would record nothing; true where the
@@ -102,7 +152,7 @@ impl Drawing<'_> {
         &self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
-        views: u32,
+        repeated: u32,
         batch: Batch<'_>,
         draw: &Draw,
     ) {
@@ -115,7 +165,7 @@ impl Drawing<'_> {
                 let pass = &self.tables.prepared().passes[batch.pass()];
                 let vertices = self.slot.vertices_of(pass, per_instance);
                 // SAFETY: this function's contract.
-                unsafe { device.cmd_draw(cmd, vertices, instances * views, 0, 0) };
+                unsafe { device.cmd_draw(cmd, vertices, instances * repeated, 0, 0) };
             }
             Draw::Pattern {
                 pattern, instances, ..
@@ -123,13 +173,13 @@ impl Drawing<'_> {
                 let indices = self.slot.patterns().place(pattern);
                 let (count, first) = (indices.len() as u32, indices.start);
                 // SAFETY: this function's contract.
-                unsafe { device.cmd_draw_indexed(cmd, count, instances * views, first, 0, 0) };
+                unsafe { device.cmd_draw_indexed(cmd, count, instances * repeated, first, 0, 0) };
             }
         }
     }
 
     /// The constants of a draw of a batch.
-    fn frame(&self, view: u32, batch: Batch<'_>, draw: &Draw) -> abi::Frame {
+    pub(super) fn frame(&self, eyes: u32, view: u32, batch: Batch<'_>, draw: &Draw) -> abi::Frame {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         let (prepared, cut) = (self.tables.prepared(), batch.list().cut());
         let max_level = prepared.passes[batch.pass()].max_level;
@@ -153,7 +203,8 @@ impl Drawing<'_> {
             flags: self.slot.flags()
                 | flag(fractional_even, abi::FRAME_FRACTIONAL_EVEN)
                 | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
-                | segments << abi::FRAME_SEGMENTS_SHIFT,
+                | segments << abi::FRAME_SEGMENTS_SHIFT
+                | eyes << abi::FRAME_EYES_SHIFT,
             first_patch: first,
             end_patch: batch.patches().end,
             patches_per_instance: per_instance,
@@ -164,15 +215,21 @@ impl Drawing<'_> {
     }
 }
 
-/// # Safety
-/// `cmd` is recording on `device`, which made `layout`.
-unsafe fn cmd_push(
-    device: &ash::Device,
-    cmd: vk::CommandBuffer,
-    layout: &Layout,
-    frame: &abi::Frame,
-) {
-    let constants = bytemuck::bytes_of(frame);
-    // SAFETY: this function's contract.
-    unsafe { device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants) };
+/// How the constants of draws are pushed.
+#[derive(Clone, Copy)]
+pub(super) struct Constants {
+    /// The pipelines' layout.
+    pub layout: vk::PipelineLayout,
+    /// Views an instance.
+    pub eyes: u32,
+}
+
+impl Constants {
+    /// # Safety
+    /// `cmd` is recording on `device`, which made the layout.
+    pub unsafe fn cmd_push(self, device: &ash::Device, cmd: vk::CommandBuffer, frame: &abi::Frame) {
+        let constants = bytemuck::bytes_of(frame);
+        // SAFETY: this function's contract.
+        unsafe { device.cmd_push_constants(cmd, self.layout, STAGES, 0, constants) };
+    }
 }

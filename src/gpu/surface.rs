@@ -84,6 +84,7 @@ impl TessellatedSurface {
             tables: &self.tables,
             pose: &self.pose,
             slot: &self.slot,
+            sets: &[],
         }
     }
 

@@ -79,6 +79,7 @@ impl<'a> Scene<'a> {
             tables: self.tables(),
             pose: &self.instances[pose].0,
             slot: &self.instances[slot].1,
+            sets: &[],
         }
     }
 
@@ -266,6 +267,7 @@ fn what_does_not_belong_together_is_not_drawn() {
         tables: other.tables(),
         pose,
         slot,
+        sets: &[],
     };
     assert_eq!(refused(strange, &[NOWHERE], 0), Some(Misuse::OtherSurface));
     let view = |view, views| Some(Misuse::View { view, views });

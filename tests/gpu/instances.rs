@@ -15,7 +15,7 @@ use crate::common::gpu::{Gpu, Loaded, SPACINGS, cut, prepare};
 use crate::shapes;
 
 /// Views beside one another, in as many rows as columns; no two look alike.
-fn grid(side: u32) -> Vec<View> {
+pub fn grid(side: u32) -> Vec<View> {
     let cells = (0..side * side).map(|cell| {
         let (x, y) = ((cell % side) as f32, (cell / side) as f32);
         let scale = 0.5 / side as f32;

@@ -8,6 +8,7 @@ mod common;
 
 mod backends;
 mod cache;
+mod canvas;
 mod edges;
 mod hexagon;
 mod instances;
@@ -16,8 +17,10 @@ mod misuse;
 mod points;
 mod precision;
 mod prepass;
+mod recording;
 mod ring;
 mod scale;
 mod shapes;
+mod targets;
 mod twins;
 mod work;

@@ -4,7 +4,7 @@
 //! `NAME.fractional-even.tese`, both once more as `NAME.multiview.*`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of
 //! their line `#include "method"`. Spacing is an execution mode, hence a module of its own. Methods that define `SCRATCH_RING` need control
 //! shaders, and have neither of the modules that do without; they have `NAME.comp`, which fills a cache. Every other stage file in `glsl/` is a
-//! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`.
+//! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`, and those of `examples/engine` likewise.
 //!
 //! With the feature `shaderc` the modules are compiled here. Without it they are the files in `glsl/spirv`, which
 //! `scripts/update-spirv` writes and `tests/spirv.rs` holds to the sources.
@@ -232,11 +232,16 @@ fn collect(folder: &Path, prefix: &str, files: &mut BTreeMap<String, String>) ->
     Ok(())
 }
 
-/// The stage macro of a file that is a stage: one in `glsl/` itself or in `glsl/conformance/` with a stage's extension.
+/// Folders whose stage files are modules of their own.
+const FOLDERS: [&str; 2] = ["conformance/", "engine/"];
+
+/// The stage macro of a file that is a stage: one in `glsl/` itself or in one of the folders with a stage's extension.
 fn stage(file: &str) -> Option<&'static str> {
     let (stem, extension) = file.rsplit_once('.')?;
     let (_, stage) = STAGES.iter().find(|(known, _)| *known == extension)?;
-    let stem = stem.strip_prefix("conformance/").unwrap_or(stem);
+    let of_folder = |folder: &str| stem.strip_prefix(folder);
+    let inside = FOLDERS.iter().find_map(|folder| of_folder(folder));
+    let stem = inside.unwrap_or(stem);
     (!stem.contains('/')).then_some(stage)
 }
 

@@ -281,7 +281,8 @@ fn an_engine_brings_its_own_fragment_shader_and_sets() {
     let scene = Scene::new(&gpu, Backend::Tessellator);
     let right = scene.classic(Shading::Normal);
     let device = gpu.device.raw();
-    let words = spirv("flat.frag").expect("it ships");
+    let last = METHODS.last().expect("there are methods").name;
+    let words = spirv(&format!("{last}.frag")).expect("it ships");
     let binding = [vk::DescriptorSetLayoutBinding::default()
         .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER)
         .descriptor_count(1)

@@ -1,10 +1,10 @@
 //! Turns `glsl/` into the SPIR-V modules that the crate embeds, and lists them in `shaders.rs` for `src/gpu/shaders.rs`.
 //!
-//! Every `glsl/method/NAME.glsl` makes up to eight modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
-//! `NAME.fractional-even.tese`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of
+//! Every `glsl/method/NAME.glsl` makes up to ten modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
+//! `NAME.fractional-even.tese`, both once more as `NAME.multiview.*`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `glsl/surface.*` with the method in the place of
 //! their line `#include "method"`. Spacing is an execution mode, hence a module of its own. Methods that define `SCRATCH_RING` need control
 //! shaders, and have neither of the modules that do without; they have `NAME.comp`, which fills a cache. Every other stage file in `glsl/` is a
-//! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`.
+//! module of its own, named like the file; those in `glsl/conformance/` are called `conformance.FILE`, and those of `examples/engine` likewise.
 //!
 //! With the feature `shaderc` the modules are compiled here. Without it they are the files in `glsl/spirv`, which
 //! `scripts/update-spirv` writes and `tests/spirv.rs` holds to the sources.
@@ -21,12 +21,18 @@ type Result<T> = std::result::Result<T, String>;
 const OPTIONS: &str = "vulkan1.2 spirv1.5 performance";
 
 /// The shells, by the ending of the module's name and of the file, and the value of the macro `SPACING`.
-const SHELLS: [(&str, &str, Option<&str>); 8] = [
+const SHELLS: [(&str, &str, Option<&str>); 10] = [
     ("vert", "vert", None),
     ("tesc", "tesc", None),
     ("equal.tese", "tese", Some("equal_spacing")),
     (
         "fractional-even.tese",
+        "tese",
+        Some("fractional_even_spacing"),
+    ),
+    ("multiview.equal.tese", "tese", Some("equal_spacing")),
+    (
+        "multiview.fractional-even.tese",
         "tese",
         Some("fractional_even_spacing"),
     ),
@@ -85,6 +91,8 @@ struct Module {
     method: Option<String>,
     stage: &'static str,
     spacing: Option<&'static str>,
+    /// Whether it is for rendering with a view mask.
+    multiview: bool,
 }
 
 /// All text under `glsl/`, by its path from there.
@@ -126,6 +134,7 @@ impl Sources {
                     method: Some(format!("method/{method}.glsl")),
                     stage: stage(&file).expect("the shells are stage files"),
                     spacing,
+                    multiview: ending.starts_with("multiview"),
                     file,
                 });
             }
@@ -137,6 +146,7 @@ impl Sources {
                     method: None,
                     stage,
                     spacing: None,
+                    multiview: false,
                     file: file.clone(),
                 });
             }
@@ -177,6 +187,9 @@ impl Sources {
         hash.text(OPTIONS);
         hash.text(module.stage);
         hash.text(module.spacing.unwrap_or_default());
+        if module.multiview {
+            hash.text("MULTIVIEW");
+        }
         let mut seen: Vec<&str> = Vec::new();
         let mut open = vec![module.file.as_str()];
         while let Some(file) = open.pop() {
@@ -219,11 +232,16 @@ fn collect(folder: &Path, prefix: &str, files: &mut BTreeMap<String, String>) ->
     Ok(())
 }
 
-/// The stage macro of a file that is a stage: one in `glsl/` itself or in `glsl/conformance/` with a stage's extension.
+/// Folders whose stage files are modules of their own.
+const FOLDERS: [&str; 2] = ["conformance/", "engine/"];
+
+/// The stage macro of a file that is a stage: one in `glsl/` itself or in one of the folders with a stage's extension.
 fn stage(file: &str) -> Option<&'static str> {
     let (stem, extension) = file.rsplit_once('.')?;
     let (_, stage) = STAGES.iter().find(|(known, _)| *known == extension)?;
-    let stem = stem.strip_prefix("conformance/").unwrap_or(stem);
+    let of_folder = |folder: &str| stem.strip_prefix(folder);
+    let inside = FOLDERS.iter().find_map(|folder| of_folder(folder));
+    let stem = inside.unwrap_or(stem);
     (!stem.contains('/')).then_some(stage)
 }
 
@@ -363,6 +381,9 @@ fn compile(
     options.add_macro_definition(module.stage, Some("1"));
     if let Some(spacing) = module.spacing {
         options.add_macro_definition("SPACING", Some(spacing));
+    }
+    if module.multiview {
+        options.add_macro_definition("MULTIVIEW", Some("1"));
     }
     options.set_include_callback(|include, _, _, _| {
         let (file, text) = sources.resolve(module, include)?;

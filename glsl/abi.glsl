@@ -31,10 +31,8 @@ const uint BINDING_DRAWS = 8u;
 const uint BINDING_CAPTURE = 9u;
 // Frame, binding: the patch of each instance, where patterns are drawn.
 const uint BINDING_INSTANCES = 10u;
-// Frame, binding, uniform: `View` records.
+// Frame, binding: `View` records.
 const uint BINDING_VIEWS = 11u;
-// How many views a frame may have.
-const uint VIEWS = 64u;
 // How many tables a method may have of its own.
 const uint TABLES = 4u;
 // Step of points: positions are sums of weighted control vertices.
@@ -145,6 +143,10 @@ const uint FRAME_PARITY = 8u;
 const uint FRAME_ADAPTIVE = 16u;
 // Frame flag: the evaluation shader counts the vertices of each patch: in the `patch_number` of that patch's `Captured` record.
 const uint FRAME_COUNT = 32u;
+// Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
+const uint FRAME_SEGMENTS_SHIFT = 8u;
+// Frame flag: views an instance, 1 but with multiview; six bits.
+const uint FRAME_EYES_SHIFT = 16u;
 // The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
 const uint PATTERN_SHIFT = 7u;
 // Rows of a patch's lattice that the geometry shader can make: one an invocation.
@@ -319,17 +321,17 @@ struct Frame {
     float level;
     // `FRAME_...` flags.
     uint flags;
-    // The first patch of the draw.
+    // The first patch of the draw; where patterns are drawn, the first entry of the table of instances.
     uint first_patch;
     // The patch behind the last of the draw.
     uint end_patch;
-    // Patches an instance.
+    // Patches an instance of the draw; one where patterns are drawn.
     uint patches_per_instance;
     // The batch's counter.
     uint counter;
-    // Where patterns are drawn, the segments of an edge of their lattice.
-    uint segments;
-    // The number of the view.
+    // Instances of the draw that one view has: those of a view come in a row.
+    uint instances;
+    // The first view.
     uint view;
 };
 

@@ -16,7 +16,7 @@ layout(location = 0) in vec3 in_position;
 layout(location = 1) centroid in vec3 in_normal;
 layout(location = 2) centroid in vec2 in_uv;
 layout(location = 3) centroid in vec2 in_texture;
-layout(location = 4) flat in uint in_patch;
+layout(location = 4) flat in uint in_drawn;
 
 layout(location = 0) out vec4 out_colour;
 
@@ -42,7 +42,7 @@ vec3 valence_colour(Patch record) {
 // The direction in which the pixel is seen. Of a triangle that is seen from its edge the line of sight may meet the plane behind the eye, or
 // nowhere.
 vec3 towards_eye(Axes view) {
-    vec3 to_eye = direction(views[frame.view].eye - in_position);
+    vec3 to_eye = direction(views[drawn_view(in_drawn)].eye - in_position);
     float along = dot(to_eye, view.back);
     return along > 0.0 ? to_eye : along < 0.0 ? -to_eye : view.back;
 }
@@ -69,9 +69,11 @@ vec3 seen_normal(vec3 to_eye) {
 }
 
 void main() {
-    Patch record = patch_record(in_patch);
+    uint number = drawn_patch(in_drawn);
+    View seen = views[drawn_view(in_drawn)];
+    Patch record = patch_record(number);
     vec2 pixel = fwidth(in_uv);
-    Axes view = view_axes(views[frame.view].clip_from_model, views[frame.view].eye);
+    Axes view = view_axes(seen.clip_from_model, seen.eye);
     vec3 to_eye = towards_eye(view);
     vec3 normal = seen_normal(to_eye);
     vec3 colour = vec3(0.56, 0.33, 0.22);
@@ -79,7 +81,7 @@ void main() {
     switch (SHADING) {
     case SHADING_NORMAL: out_colour = vec4(0.5 + 0.5 * direction(in_normal), 1.0); return;
     case SHADING_LINES: out_colour = vec4(vec3(0.02), 1.0); return;
-    case SHADING_PATCH: colour = patch_colour(in_patch * 2u + record.ptex); break;
+    case SHADING_PATCH: colour = patch_colour(number * 2u + record.ptex); break;
     case SHADING_NODE: colour = node_colour(record, pixel); break;
     case SHADING_VALENCE: colour = valence_colour(record); break;
     default: gloss = 1.0;

@@ -14,6 +14,7 @@ layout(points, invocations = GEOMETRY_ROWS) in;
 layout(triangle_strip, max_vertices = 2 * GEOMETRY_ROWS + 2) out;
 
 layout(location = 0) flat in uint in_patch[];
+layout(location = 1) flat in uint in_view[];
 
 uint along(uint at, uint segments, float level) {
     uint steps = segments / uint(level);
@@ -43,7 +44,7 @@ uvec2 snapped(Levels levels, uint n, uvec2 at) {
 
 void emit(Patch record, Levels levels, uint n, uvec2 at) {
     vec2 uv = lattice_uv(snapped(levels, n, at), n);
-    write_vertex(record, in_patch[0], uv, evaluate_patch(record, slot_of(in_patch[0]), uv));
+    write_vertex(record, in_patch[0], in_view[0], uv, evaluate_patch(record, slot_of(in_patch[0]), uv));
     EmitVertex();
 }
 

@@ -5,6 +5,7 @@
 
 layout(location = 0) in uint in_patch[];
 layout(location = 1) in vec3 in_point[];
+layout(location = 2) in uint in_view[];
 
 #include "method"
 
@@ -16,6 +17,7 @@ layout(location = 1) patch out uint out_slot;
 #else
 layout(location = 2) out vec3 out_point[];
 #endif
+layout(location = 3) patch out uint out_view;
 
 // barrier() may stand in main only, and in no control flow (GLSL 4.60, section 8.16).
 void main() {
@@ -39,6 +41,7 @@ void main() {
 #endif
     if (gl_InvocationID == 0) {
         out_patch = number;
+        out_view = in_view[0];
         // Outer level 0 discards a patch (Vulkan spec, "Tessellator Patch Discard").
         vec4 edges = drawn ? levels.edges : vec4(0.0);
 #ifdef TRIANGLES

@@ -1,5 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef MULTIVIEW
+#extension GL_EXT_multiview : require
+#endif
 
 #include "lib/interface.glsl"
 #include "method"
@@ -20,9 +23,17 @@ layout(location = 1) patch in uint in_slot;
 #else
 #define in_slot slot_of(in_patch)
 #endif
+layout(location = 3) patch in uint in_view;
+
+// MULTIVIEW comes from the build as well: one module for rendering with a view mask.
+#ifdef MULTIVIEW
+#define SEEN_VIEW (in_view + uint(gl_ViewIndex))
+#else
+#define SEEN_VIEW in_view
+#endif
 
 void main() {
     Patch record = patch_record(in_patch);
     vec2 uv = shared_coordinates(record, patch_levels(in_patch, record), gl_TessCoord);
-    write_vertex(record, in_patch, uv, evaluate_patch(record, in_slot, uv));
+    write_vertex(record, in_patch, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));
 }

@@ -139,10 +139,8 @@ constants! {
     BINDING_CAPTURE = 9;
     /// Frame, binding: the patch of each instance, where patterns are drawn.
     BINDING_INSTANCES = 10;
-    /// Frame, binding, uniform: `View` records.
+    /// Frame, binding: `View` records.
     BINDING_VIEWS = 11;
-    /// How many views a frame may have.
-    VIEWS = 64;
     /// How many tables a method may have of its own.
     TABLES = 4;
 
@@ -260,6 +258,10 @@ constants! {
     FRAME_ADAPTIVE = 16;
     /// Frame flag: the evaluation shader counts the vertices of each patch: in the `patch_number` of that patch's `Captured` record.
     FRAME_COUNT = 32;
+    /// Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
+    FRAME_SEGMENTS_SHIFT = 8;
+    /// Frame flag: views an instance, 1 but with multiview; six bits.
+    FRAME_EYES_SHIFT = 16;
 
     /// The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
     PATTERN_SHIFT = 7;
@@ -439,17 +441,17 @@ structs! {
         level: f32,
         /// `FRAME_...` flags.
         flags: u32,
-        /// The first patch of the draw.
+        /// The first patch of the draw; where patterns are drawn, the first entry of the table of instances.
         first_patch: u32,
         /// The patch behind the last of the draw.
         end_patch: u32,
-        /// Patches an instance.
+        /// Patches an instance of the draw; one where patterns are drawn.
         patches_per_instance: u32,
         /// The batch's counter.
         counter: u32,
-        /// Where patterns are drawn, the segments of an edge of their lattice.
-        segments: u32,
-        /// The number of the view.
+        /// Instances of the draw that one view has: those of a view come in a row.
+        instances: u32,
+        /// The first view.
         view: u32,
     }
 

@@ -59,7 +59,7 @@
 //! ```
 //!
 //! The [`manual`] says all of it in words. `examples/evaluate_limit.rs` asks for single points; `examples/headless_png/main.rs` is the integration guide, from the instance to the
-//! picture.
+//! picture; `examples/engine/main.rs` is a small engine, with instances, skinning, shadows and two frames in flight.
 //!
 //! # Features
 //!
@@ -82,17 +82,19 @@
 //! `gpu::Support` asks for them, `gpu::FeatureChain` switches them on. With `vulkanMemoryModel` also switch on `vulkanMemoryModelDeviceScope`:
 //! our shaders' atomic operations have device scope.
 //!
-//! **The render pass** needs one thing: the subpass must depend on itself as `gpu::ring::ring_dependency` says. Control shaders hand points
+//! **Targets.** `gpu::Target` is what pipelines draw into, a render pass or dynamic rendering: colours or depths alone, samples, culling, comparison. With a
+//! ring a render pass needs one thing: the subpass must depend on itself as `gpu::ring::ring_dependency` says. Control shaders hand points
 //! to evaluation shaders through a ring in memory; batches that use it one after another have a barrier between them.
 //!
-//! **Dynamic rendering** allows no such barrier. Set `gpu::SurfaceOptions::barriers` to false; before each batch whose `frame::Batch::waits`
+//! Dynamic rendering allows no such barrier: with a cache none is needed, and with a ring set `gpu::SurfaceOptions::barriers` to false; before each batch whose `frame::Batch::waits`
 //! is true, end rendering, record `gpu::ring::cmd_ring_barrier` and your attachments' barrier, and begin again with `LOAD`. With a ring
 //! that holds the whole model nothing waits, but for the few patches that are over where a driver bounds the vertices of an instance.
 //!
 //! **Lifetimes.** `gpu::TessellatedSurface` is three things in one, which an engine with more than one instance or frame keeps by themselves:
 //! `gpu::Tables` live as long as the topology and are shared by all; a `gpu::Pose` belongs to an instance that deforms, and rigid ones share it; a
 //! `gpu::FrameSlot` belongs to a frame in flight, so that what a frame writes waits for no other. A `gpu::Drawing` of the three is drawn. Each has a
-//! descriptor set of its own. The places of instances, and the views, are the slot's `gpu::View`s: `cmd_prepare` takes them, a draw names one.
+//! descriptor set of its own. The places of instances, and the views, are the slot's `gpu::View`s: `cmd_prepare` takes them, and a draw draws
+//! any number at once.
 //!
 //! **Residence.** Where control points live is `gpu::SurfaceOptions::residence`: in the `Ring` control shaders compute them as they go, for a single pass.
 //! In the `Cache` of a pose `gpu::Pose::cmd_cache` computes each once, and nothing while nothing moves: then no draw has a barrier, dynamic rendering

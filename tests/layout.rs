@@ -14,8 +14,8 @@ use hullform::gpu::shaders::MODULES;
 /// Every module that shares `abi` with the library: all but those of the conformance suite.
 fn modules() -> Vec<(String, Vec<u8>)> {
     let all = all_modules().into_iter();
-    // The suite's, and those of coloured triangles, have buffers of their own.
-    let foreign = ["conformance.", "coloured."];
+    // The suite's, those of coloured triangles, and those of an example have buffers of their own.
+    let foreign = ["conformance.", "coloured.", "engine."];
     all.filter(|(name, _)| !foreign.iter().any(|start| name.starts_with(start)))
         .collect()
 }

@@ -24,8 +24,8 @@ use engine::{Commands, HEIGHT, Own, Picture, WIDTH, failed, write_png};
 use glam::{Mat4, Vec3};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use hullform::gpu::{
-    Cut, Driver, FeatureChain, Fill, Layout, Pipelines, Shading, Support, SurfaceOptions, Target,
-    TessellatedSurface, View, ring, workarounds,
+    Cut, Driver, FeatureChain, Fill, Layout, PipelineOptions, Pipelines, Shading, Support,
+    SurfaceOptions, Target, TessellatedSurface, View, ring, workarounds,
 };
 use hullform::mesh::{DEFAULT_BUILTIN, Model, builtin, read_obj};
 use hullform::method::{Displacement, MethodOptions, method};
@@ -136,12 +136,13 @@ fn run() -> Result<(), Box<dyn Error>> {
         level: 8.0,
         spacing: Spacing::FractionalEven,
     };
-    let target = Target {
-        render_pass: picture.render_pass,
-        samples: vk::SampleCountFlags::TYPE_1,
-        // The tugboat's funnel is open: its inside is seen.
-        cull: vk::CullModeFlags::NONE,
-        compare: vk::CompareOp::LESS_OR_EQUAL,
+    let options = PipelineOptions {
+        target: Target::render_pass(picture.render_pass),
+        backend: surface.options().backend,
+        residence: surface.options().residence,
+        spacing: cut.spacing,
+        fill: Fill::Solid(Shading::Lit),
+        fragment: None,
     };
     // SAFETY: all of one live device.
     let pipelines = unsafe {
@@ -150,11 +151,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             &layout,
             vk::PipelineCache::null(),
             surface.prepared(),
-            target,
-            surface.options().backend,
-            surface.options().residence,
-            cut.spacing,
-            Fill::Solid(Shading::Lit),
+            &options,
         )?
     };
     let pipelines = Own::new(pipelines, |pipelines| {
@@ -178,7 +175,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     picture.begin(cmd);
     for batch in list.batches() {
         // SAFETY: in subpass 0 of the pipelines' render pass, which depends on itself as it must; the batches come in their order.
-        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, 0, batch)? };
+        unsafe { surface.cmd_draw(&device, cmd, &layout, &pipelines, 0..1, batch)? };
     }
     // Your other objects can be drawn here: bind their pipelines and descriptor sets again, `cmd_draw` has bound its own.
     picture.end(cmd);

@@ -14,12 +14,17 @@ layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer Contr
 layout(set = SET_TABLES, binding = BINDING_BASES, scalar) uniform BaseBlock { Bases bases; };
 layout(set = SET_POSE, binding = BINDING_POSITIONS, scalar) readonly buffer PositionTable { vec3 positions[]; };
 layout(set = SET_FRAME, binding = BINDING_DRAWS, scalar) readonly buffer DrawTable { PatchDraw draws[]; };
-layout(set = SET_FRAME, binding = BINDING_VIEWS, scalar) uniform ViewBlock { View views[VIEWS]; };
+layout(set = SET_FRAME, binding = BINDING_VIEWS, scalar) readonly buffer ViewTable { View views[]; };
 
 // Entry `place` of the lists of control vertices.
 uint control_at(uint place) { return words[bases.controls + place]; }
 
 // The patch of a number; surplus numbers of the last instance read the last patch and are not drawn.
 Patch patch_record(uint number) { return patches[min(number, frame.end_patch - 1u)]; }
+
+// What fragment shaders are told of a patch and a view, in one number: geometry shaders have no component to spare for two.
+uint drawn_key(uint number, uint view) { return view * frame.end_patch + number; }
+uint drawn_patch(uint key) { return key % frame.end_patch; }
+uint drawn_view(uint key) { return key / frame.end_patch; }
 
 #endif

@@ -13,7 +13,7 @@ layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec2 out_uv;
 layout(location = 3) out vec2 out_texture;
-layout(location = 4) flat out uint out_patch;
+layout(location = 4) flat out uint out_drawn;
 
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer TextureTable { vec2 texture_corners[]; };
 
@@ -46,15 +46,15 @@ vec2 texture_coordinates(uint number, vec2 uv) {
 uint slot_of(uint number) { return 0u; }
 #endif
 
-void write_vertex(Patch record, uint number, vec2 uv, Point point) {
-    vec2 displacement = views[frame.view].displacement;
+void write_vertex(Patch record, uint number, uint view, vec2 uv, Point point) {
+    vec2 displacement = views[view].displacement;
     if (displacement.x != 0.0 && has_one_normal(record, uv)) displace(displacement, point.position, point.normal);
     out_position = point.position;
     out_normal = point.normal;
     out_uv = uv;
     out_texture = texture_coordinates(number, uv);
-    out_patch = number;
-    gl_Position = views[frame.view].clip_from_model * vec4(point.position, 1.0);
+    out_drawn = drawn_key(number, view);
+    gl_Position = views[view].clip_from_model * vec4(point.position, 1.0);
     if ((frame.flags & FRAME_PARITY) != 0u) gl_Position = amplified(gl_Position, point.position);
     if ((frame.flags & FRAME_CAPTURE) != 0u) capture(number, uv, point);
     if ((frame.flags & FRAME_COUNT) != 0u) atomicAdd(captured[number].patch_number, 1u);

@@ -347,7 +347,7 @@ impl Loaded<'_> {
                     ring::cmd_ring_barrier(device, cmd);
                 }
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0..1, batch)?;
             }
         }
         Ok(())

@@ -60,6 +60,42 @@ pub enum Misuse {
         /// How many there are.
         views: u32,
     },
+    /// Several views in one draw of a batch that uses the ring. There each view's control points are computed again, into slots of their own, so
+    /// nothing is gained by it: a round a view, or a cache.
+    #[error(
+        "several views in one draw need their control points in a cache; in the ring each view has a round of its own"
+    )]
+    ViewsInRing,
+    /// With multiview an instance has several views, and these are not some instances' views.
+    #[error("{views} views for instances that have {eyes} each")]
+    Eyes {
+        /// How many views were asked for.
+        views: u32,
+        /// How many an instance has.
+        eyes: u32,
+    },
+    /// Multiview with a backend whose shaders know nothing of it.
+    #[error("the backend {backend} draws one view at a time; the tessellator knows multiview")]
+    MultiviewBackend {
+        /// The backend's name.
+        backend: &'static str,
+    },
+    /// A batch that waits for another inside dynamic rendering, which allows no barrier.
+    #[error(
+        "a batch waits for another, and dynamic rendering allows no barrier: switch off SurfaceOptions::barriers, or cache control points"
+    )]
+    BarrierInRendering,
+    /// Sets of the engine's own for pipelines without a layout that has them.
+    #[error("sets of the engine's own need pipelines with a layout of the engine's own")]
+    OwnSets,
+    /// Views and patches whose numbers do not go into the one that fragment shaders are told.
+    #[error("views up to {views} of {patches} patches: the product has to be below 2^32")]
+    ManyViews {
+        /// The number behind the last view.
+        views: u32,
+        /// The number behind the last patch.
+        patches: u32,
+    },
     /// What was prepared is another mesh's.
     #[error("what was prepared is of another mesh: faces, tags or scheme differ")]
     OtherMesh,

@@ -62,6 +62,8 @@ pub struct SurfaceOptions {
     /// How many times the batches are drawn after one `cmd_prepare`, 1 at least; see
     /// [`DrawList::round`](super::DrawList::round).
     pub rounds: u32,
+    /// How many views a frame may have; 84 bytes each.
+    pub views: u32,
     /// Whether `cmd_draw` records the barriers that batches need. Switch it off for dynamic rendering, which
     /// allows no such barrier: before each batch that [waits](super::Batch::waits) the engine then ends rendering, records
     /// `gpu::ring::cmd_ring_barrier` with whatever its attachments need, and begins again with `LOAD`.
@@ -72,7 +74,8 @@ pub struct SurfaceOptions {
 }
 
 impl Default for SurfaceOptions {
-    /// The tessellator, control points in a ring of 1 MiB with counters, no capture, no counts, every level, barriers by `cmd_draw`.
+    /// The tessellator, control points in a ring of 1 MiB with counters, no capture, no counts, every level, one round, 64 views, barriers by
+    /// `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
             backend: Backend::Tessellator,
@@ -82,6 +85,7 @@ impl Default for SurfaceOptions {
             capture_vertices: 0,
             count_vertices: false,
             rounds: 1,
+            views: 64,
             greatest_level: 64.0,
             barriers: true,
             amplify_cracks: false,

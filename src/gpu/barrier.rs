@@ -2,6 +2,9 @@
 
 use ash::vk;
 
+/// Bytes that `vkCmdUpdateBuffer` takes (VUID-vkCmdUpdateBuffer-dataSize-00037).
+pub(super) const MOST_UPDATED: usize = 65_536;
+
 /// A barrier from all writes of the stages `from` to `access` in the stages `to`.
 ///
 /// # Safety

@@ -5,7 +5,7 @@ use ash::vk;
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Cut, DrawList, Residence, SurfaceOptions};
-use crate::gpu::barrier::cmd_make_visible;
+use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::points::compute_pipeline;
 use crate::gpu::sets::STAGES;
 use crate::gpu::{Layout, Pose, Tables};
@@ -13,9 +13,6 @@ use crate::method::Prepared;
 
 /// Workgroups of a dispatch that every device takes (Vulkan spec, "Required Limits", `maxComputeWorkGroupCount`).
 const MOST_GROUPS: u32 = 65_535;
-
-/// Bytes that `vkCmdUpdateBuffer` takes (VUID-vkCmdUpdateBuffer-dataSize-00037).
-const MOST_UPDATED: usize = 65_536;
 
 /// What is known of a pose's cache.
 #[derive(Debug)]

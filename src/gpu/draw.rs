@@ -1,9 +1,11 @@
 //! Recording the draws of a batch.
 
+use std::ops::Range;
+
 use ash::vk;
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Draw, DrawList};
 use crate::gpu::ring::cmd_ring_barrier;
 use crate::gpu::sets::STAGES;
@@ -21,23 +23,32 @@ pub struct Drawing<'a> {
     pub pose: &'a Pose,
     /// What the frame writes.
     pub slot: &'a FrameSlot,
+    /// The engine's own sets, bound from 3 on; for pipelines with a layout of the engine's own.
+    pub sets: &'a [vk::DescriptorSet],
 }
 
 impl Drawing<'_> {
-    /// Records the draw of a batch, seen with a view of those that [`cmd_prepare`](FrameSlot::cmd_prepare) was given, from 0. A batch that uses
-    /// the ring after another waits for that one's evaluation shaders.
+    /// Records the draw of a batch, seen with each of a range of the views that [`cmd_prepare`](FrameSlot::cmd_prepare) was given, from 0: rigid instances
+    /// of a pose are views of it, and all of them are one draw (one a refinement pattern, where patterns are drawn). No views, no draw. A batch that
+    /// uses the ring takes one view at a time, each in a [round](super::DrawList::round) of its own, and waits for the evaluation shaders of the batch
+    /// before it.
     ///
-    /// Binds a pipeline and sets 0 to 2, and pushes constants from offset 0: an engine binds its own again afterwards.
+    /// Fragment shaders are told patch and view in one number (`drawn_patch` and `drawn_view` in `glsl/lib/interface.glsl`).
+    ///
+    /// Binds a pipeline and sets 0 to 2, and [`sets`](Self::sets) from 3 on, and pushes constants from offset 0: an engine binds its own again
+    /// afterwards.
     ///
     /// # Errors
-    /// [`Misuse::OtherSurface`](crate::Misuse::OtherSurface), [`Misuse::NotWritten`](crate::Misuse::NotWritten),
-    /// [`Misuse::View`](crate::Misuse::View), [`Misuse::NotCached`](crate::Misuse::NotCached) and [`Misuse::OtherPipelines`](crate::Misuse::OtherPipelines); nothing has been recorded then.
+    /// [`Misuse::OtherSurface`], [`Misuse::NotWritten`],
+    /// [`Misuse::View`], [`Misuse::ViewsInRing`],
+    /// [`Misuse::ManyViews`], [`Misuse::Eyes`], [`Misuse::NotCached`], [`Misuse::OtherPipelines`], [`Misuse::BarrierInRendering`] and
+    /// [`Misuse::OwnSets`]; nothing has been recorded then.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, which made all of this, after `cmd_upload` of tables and pose and
-    /// [`cmd_prepare`](FrameSlot::cmd_prepare) (of this frame), inside subpass 0 of a render pass that is compatible with that of `pipelines`
-    /// and whose subpass declares [`ring_dependency`](super::ring::ring_dependency), or, without
-    /// [`barriers`](super::SurfaceOptions::barriers), inside any rendering that suits `pipelines`. Viewport and scissor are set. `layout` is the
+    /// `cmd` is recording on `device`, which made all of this, a primary or a secondary command buffer, after `cmd_upload` of tables and pose and
+    /// [`cmd_prepare`](FrameSlot::cmd_prepare) (of this frame), inside rendering that suits `pipelines`: dynamic, or the subpass of a render
+    /// pass that is compatible with theirs. Where batches wait for one another, and record the barriers for it
+    /// ([`barriers`](super::SurfaceOptions::barriers)), that subpass declares [`ring_dependency`](super::ring::ring_dependency). Viewport and scissor are set. `layout` is the
     /// one that made `pipelines` and all of this. Each batch of each [round](super::DrawList::round) is recorded at most once after
     /// `cmd_prepare`, in their order. Everything lives until the commands have been executed.
     pub unsafe fn cmd_draw(
@@ -46,35 +57,87 @@ impl Drawing<'_> {
         cmd: vk::CommandBuffer,
         layout: &Layout,
         pipelines: &Pipelines,
-        view: u32,
+        views: Range<u32>,
         batch: Batch<'_>,
     ) -> Result<()> {
-        let Drawing { tables, pose, slot } = *self;
+        let pipeline = self.check(pipelines, &views, batch)?;
+        if views.is_empty() {
+            return Ok(());
+        }
+        let instances = views.len() as u32 / pipelines.eyes();
+        let constants = Constants {
+            layout: pipelines.layout().unwrap_or(layout.pipeline()),
+            eyes: pipelines.eyes(),
+        };
+        // SAFETY: this function's contract.
+        unsafe { self.cmd_bind(device, cmd, constants.layout, pipeline, batch) };
+        for draw in batch.draws() {
+            let frame = self.frame(constants.eyes, views.start, batch, draw);
+            // SAFETY: as above; the list's patterns are those that were written last.
+            unsafe {
+                constants.cmd_push(device, cmd, &frame);
+                self.cmd_draw_one(device, cmd, instances, batch, draw);
+            }
+        }
+        Ok(())
+    }
+
+    /// The pipeline of a batch, if it may be drawn with these views now.
+    ///
+    /// # Errors
+    /// As [`cmd_draw`](Self::cmd_draw).
+    pub(super) fn check(
+        &self,
+        pipelines: &Pipelines,
+        views: &Range<u32>,
+        batch: Batch<'_>,
+    ) -> Result<vk::Pipeline> {
+        let Drawing {
+            tables, pose, slot, ..
+        } = *self;
         pose.check(tables)?;
         slot.check_list(tables, batch.list())?;
-        slot.check_view(view)?;
+        slot.check_views(views, batch)?;
         pose.check_cached(batch.list())?;
-        let pass = batch.pass();
-        let pipeline = pipelines.for_pass(tables.prepared(), batch.list(), pass)?;
+        let (count, eyes) = (views.len() as u32, pipelines.eyes());
+        if count % eyes != 0 {
+            let views = count;
+            return Err(Error::Misuse(Misuse::Eyes { views, eyes }));
+        }
+        if pipelines.are_dynamic() && batch.waits() && slot.options().barriers {
+            return Err(Error::Misuse(Misuse::BarrierInRendering));
+        }
+        if !self.sets.is_empty() && pipelines.layout().is_none() {
+            return Err(Error::Misuse(Misuse::OwnSets));
+        }
+        pipelines.for_pass(tables.prepared(), batch.list(), batch.pass())
+    }
+
+    /// # Safety
+    /// As [`cmd_draw`](Self::cmd_draw); the layout is the pipeline's.
+    pub(super) unsafe fn cmd_bind(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: vk::PipelineLayout,
+        pipeline: vk::Pipeline,
+        batch: Batch<'_>,
+    ) {
+        let (slot, pass) = (self.slot, batch.pass());
         let graphics = vk::PipelineBindPoint::GRAPHICS;
-        let sets = [tables.set(pass), pose.set(), slot.set(pass)];
+        let ours = [self.tables.set(pass), self.pose.set(), slot.set(pass)];
+        let sets = [&ours, self.sets].concat();
         // SAFETY: this function's contract.
         unsafe {
             if batch.waits() && slot.options().barriers {
                 cmd_ring_barrier(device, cmd);
             }
             device.cmd_bind_pipeline(cmd, graphics, pipeline);
-            device.cmd_bind_descriptor_sets(cmd, graphics, layout.pipeline(), 0, &sets, &[]);
+            device.cmd_bind_descriptor_sets(cmd, graphics, layout, 0, &sets, &[]);
             if let Some(indices) = slot.patterns().buffer() {
                 device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16);
             }
         }
-        let mut frame = self.frame(view, batch);
-        for draw in batch.draws() {
-            // SAFETY: as above; the list's patterns are those that were written last.
-            unsafe { self.cmd_draw_one(device, cmd, layout, &mut frame, batch, draw) };
-        }
-        Ok(())
     }
 
     /// Whether the pose has all control points that a list is drawn with, so that [`cmd_cache`](Pose::cmd_cache) would record nothing; true where the
@@ -84,81 +147,89 @@ impl Drawing<'_> {
     }
 
     /// # Safety
-    /// As [`cmd_draw`](Self::cmd_draw), with pipeline, sets and indices bound.
+    /// As [`cmd_draw`](Self::cmd_draw), with pipeline, sets and indices bound, and the draw's constants pushed.
     unsafe fn cmd_draw_one(
         &self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
-        layout: &Layout,
-        frame: &mut abi::Frame,
+        repeated: u32,
         batch: Batch<'_>,
         draw: &Draw,
     ) {
         match *draw {
             Draw::Patches {
-                first,
                 per_instance,
                 instances,
+                ..
             } => {
-                (frame.first_patch, frame.patches_per_instance) = (first, per_instance);
                 let pass = &self.tables.prepared().passes[batch.pass()];
                 let vertices = self.slot.vertices_of(pass, per_instance);
                 // SAFETY: this function's contract.
-                unsafe {
-                    cmd_push(device, cmd, layout, frame);
-                    device.cmd_draw(cmd, vertices, instances, 0, 0);
-                }
+                unsafe { device.cmd_draw(cmd, vertices, instances * repeated, 0, 0) };
             }
             Draw::Pattern {
-                pattern,
-                first_instance,
-                instances,
-                segments,
+                pattern, instances, ..
             } => {
-                frame.segments = segments;
                 let indices = self.slot.patterns().place(pattern);
-                let count = indices.len() as u32;
+                let (count, first) = (indices.len() as u32, indices.start);
                 // SAFETY: this function's contract.
-                unsafe {
-                    cmd_push(device, cmd, layout, frame);
-                    let first = indices.start;
-                    device.cmd_draw_indexed(cmd, count, instances, first, 0, first_instance);
-                }
+                unsafe { device.cmd_draw_indexed(cmd, count, instances * repeated, first, 0, 0) };
             }
         }
     }
 
-    /// The constants of a batch, its draws aside.
-    fn frame(&self, view: u32, batch: Batch<'_>) -> abi::Frame {
+    /// The constants of a draw of a batch.
+    pub(super) fn frame(&self, eyes: u32, view: u32, batch: Batch<'_>, draw: &Draw) -> abi::Frame {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         let (prepared, cut) = (self.tables.prepared(), batch.list().cut());
         let max_level = prepared.passes[batch.pass()].max_level;
         let fractional_even = cut.spacing == Spacing::FractionalEven;
+        let (first, per_instance, instances, segments) = match *draw {
+            Draw::Patches {
+                first,
+                per_instance,
+                instances,
+            } => (first, per_instance, instances, 0),
+            Draw::Pattern {
+                first_instance,
+                instances,
+                segments,
+                ..
+            } => (first_instance, 1, instances, segments),
+        };
         abi::Frame {
             // As the CPU has it, whatever the pass: control shaders compute the points that this level needs.
             level: cut.spacing.clamp(cut.level, max_level),
             flags: self.slot.flags()
                 | flag(fractional_even, abi::FRAME_FRACTIONAL_EVEN)
-                | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE),
-            first_patch: batch.patches().start,
+                | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
+                | segments << abi::FRAME_SEGMENTS_SHIFT
+                | eyes << abi::FRAME_EYES_SHIFT,
+            first_patch: first,
             end_patch: batch.patches().end,
-            patches_per_instance: 0,
+            patches_per_instance: per_instance,
             counter: abi::COUNTER_BATCHES + batch.ring_batch(),
-            segments: 0,
+            instances,
             view,
         }
     }
 }
 
-/// # Safety
-/// `cmd` is recording on `device`, which made `layout`.
-unsafe fn cmd_push(
-    device: &ash::Device,
-    cmd: vk::CommandBuffer,
-    layout: &Layout,
-    frame: &abi::Frame,
-) {
-    let constants = bytemuck::bytes_of(frame);
-    // SAFETY: this function's contract.
-    unsafe { device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants) };
+/// How the constants of draws are pushed.
+#[derive(Clone, Copy)]
+pub(super) struct Constants {
+    /// The pipelines' layout.
+    pub layout: vk::PipelineLayout,
+    /// Views an instance.
+    pub eyes: u32,
+}
+
+impl Constants {
+    /// # Safety
+    /// `cmd` is recording on `device`, which made the layout.
+    pub unsafe fn cmd_push(self, device: &ash::Device, cmd: vk::CommandBuffer, frame: &abi::Frame) {
+        let constants = bytemuck::bytes_of(frame);
+        // SAFETY: this function's contract.
+        unsafe { device.cmd_push_constants(cmd, self.layout, STAGES, 0, constants) };
+    }
 }

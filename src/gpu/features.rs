@@ -19,6 +19,12 @@ pub struct OptionalFeatures {
     pub pipeline_statistics_query: bool,
     /// Shading at each sample (`sampleRateShading`).
     pub sample_rate_shading: bool,
+    /// Indirect draws with several commands, which begin with any instance (`multiDrawIndirect`, `drawIndirectFirstInstance`).
+    pub multi_draw_indirect: bool,
+    /// Several views at once, of what is tessellated (`multiview`, `multiviewTessellationShader`).
+    pub multiview: bool,
+    /// Rendering without render passes (`dynamicRendering`), where Vulkan 1.3 has it.
+    pub dynamic_rendering: bool,
     /// `maintenance4`, from Vulkan 1.3 or `VK_KHR_maintenance4`: shader interfaces of unequal width may be linked.
     pub maintenance4: bool,
 }
@@ -43,10 +49,28 @@ pub struct ExtraFeatures {
 pub struct Enabled {
     pub(super) fill_mode_non_solid: bool,
     pub(super) geometry_shader: bool,
+    pub(super) multi_draw_indirect: bool,
+    pub(super) multiview: bool,
+    pub(super) dynamic_rendering: bool,
     pub(super) max_storage_buffer_range: u32,
 }
 
 impl Enabled {
+    /// That dynamic rendering is on as well, as this struct of the device's creation shows; of `VkPhysicalDeviceVulkan13Features` take over the one member.
+    pub fn with_dynamic_rendering(
+        mut self,
+        features: &vk::PhysicalDeviceDynamicRenderingFeatures<'_>,
+    ) -> Enabled {
+        self.dynamic_rendering = features.dynamic_rendering != 0;
+        self
+    }
+
+    /// That multiview is on as well, for tessellation too, as this struct shows; of `VkPhysicalDeviceVulkan11Features` take over the members.
+    pub fn with_multiview(mut self, features: &vk::PhysicalDeviceMultiviewFeatures<'_>) -> Enabled {
+        self.multiview = features.multiview != 0 && features.multiview_tessellation_shader != 0;
+        self
+    }
+
     /// # Errors
     /// [`Misuse::Features`] when the optional feature `name` is wanted and was not switched on.
     pub(super) fn require(wanted: bool, enabled: bool, name: &str) -> Result<()> {
@@ -174,6 +198,10 @@ impl Support {
         Ok(Enabled {
             fill_mode_non_solid: on(core.fill_mode_non_solid),
             geometry_shader: on(core.geometry_shader),
+            multi_draw_indirect: on(core.multi_draw_indirect)
+                && on(core.draw_indirect_first_instance),
+            multiview: false,
+            dynamic_rendering: false,
             max_storage_buffer_range: self.max_storage_buffer_range,
         })
     }
@@ -189,7 +217,7 @@ impl Support {
 
     /// Sets the required features, and the optional ones that exist, in an engine's own structs; clears nothing.
     ///
-    /// `maintenance4` has a struct of its own and is left to the caller.
+    /// `maintenance4`, multiview and dynamic rendering have structs of their own and are left to the caller.
     pub fn require(
         &self,
         core: &mut vk::PhysicalDeviceFeatures,
@@ -207,6 +235,9 @@ impl Support {
             optional.pipeline_statistics_query,
         );
         set(&mut core.sample_rate_shading, optional.sample_rate_shading);
+        let multi_draw = optional.multi_draw_indirect;
+        set(&mut core.multi_draw_indirect, multi_draw);
+        set(&mut core.draw_indirect_first_instance, multi_draw);
     }
 
     /// # Safety
@@ -215,10 +246,13 @@ impl Support {
         let mut scalar = vk::PhysicalDeviceScalarBlockLayoutFeatures::default();
         let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
         let mut maintenance4 = vk::PhysicalDeviceMaintenance4Features::default();
+        let mut multiview = vk::PhysicalDeviceMultiviewFeatures::default();
+        let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
         let mut features = vk::PhysicalDeviceFeatures2::default();
         // Structs from beyond the device's version stay out of the chain: nobody would fill them in.
         if self.api_version >= vk::API_VERSION_1_2 {
             features = features.push_next(&mut scalar).push_next(&mut model);
+            features = features.push_next(&mut multiview);
         }
         let core13 = self.api_version >= vk::API_VERSION_1_3;
         // SAFETY: the caller's instance and physical device. One that fails to answer goes without: we can do without.
@@ -226,6 +260,9 @@ impl Support {
             && unsafe { has_extension(instance, physical, khr::maintenance4::NAME) } == Ok(true);
         if core13 || by_extension {
             features = features.push_next(&mut maintenance4);
+        }
+        if core13 {
+            features = features.push_next(&mut rendering);
         }
         // SAFETY: the caller's; each struct in the chain is one that the device knows and outlives the call.
         unsafe { instance.get_physical_device_features2(physical, &mut features) };
@@ -238,6 +275,10 @@ impl Support {
             geometry_shader: core.geometry_shader != 0,
             pipeline_statistics_query: core.pipeline_statistics_query != 0,
             sample_rate_shading: core.sample_rate_shading != 0,
+            multi_draw_indirect: core.multi_draw_indirect != 0
+                && core.draw_indirect_first_instance != 0,
+            multiview: multiview.multiview != 0 && multiview.multiview_tessellation_shader != 0,
+            dynamic_rendering: rendering.dynamic_rendering != 0,
             maintenance4: maintenance4.maintenance4 != 0,
         };
         self.vulkan_memory_model =
@@ -251,7 +292,9 @@ pub struct FeatureChain {
     support: Support,
     core: vk::PhysicalDeviceFeatures2<'static>,
     vulkan12: vk::PhysicalDeviceVulkan12Features<'static>,
+    multiview: vk::PhysicalDeviceMultiviewFeatures<'static>,
     maintenance4: Option<vk::PhysicalDeviceMaintenance4Features<'static>>,
+    rendering: Option<vk::PhysicalDeviceDynamicRenderingFeatures<'static>>,
 }
 
 impl FeatureChain {
@@ -261,11 +304,19 @@ impl FeatureChain {
         let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default();
         support.require(&mut core.features, &mut vulkan12);
         let maintenance4 = vk::PhysicalDeviceMaintenance4Features::default().maintenance4(true);
+        let views = support.optional.multiview;
+        let multiview = vk::PhysicalDeviceMultiviewFeatures::default()
+            .multiview(views)
+            .multiview_tessellation_shader(views);
+        let rendering =
+            vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
         FeatureChain {
             support: *support,
             core,
             vulkan12,
+            multiview,
             maintenance4: support.optional.maintenance4.then_some(maintenance4),
+            rendering: support.optional.dynamic_rendering.then_some(rendering),
         }
     }
 
@@ -283,7 +334,12 @@ impl FeatureChain {
     /// # Errors
     /// As [`Support::enabled`].
     pub fn enabled(&self) -> Result<Enabled> {
-        self.support.enabled(&self.core.features, &self.vulkan12)
+        let enabled = self.support.enabled(&self.core.features, &self.vulkan12)?;
+        let enabled = enabled.with_multiview(&self.multiview);
+        Ok(match &self.rendering {
+            Some(rendering) => enabled.with_dynamic_rendering(rendering),
+            None => enabled,
+        })
     }
 
     /// Chains the structs to `info`.
@@ -292,7 +348,8 @@ impl FeatureChain {
     /// The device's [`Support::missing`] is empty and [`Support::extensions`] are enabled in `info`. `info` has no
     /// `pEnabledFeatures` (VUID-VkDeviceCreateInfo-pNext-00373), and none of `VkPhysicalDeviceFeatures2`,
     /// `VkPhysicalDeviceVulkan12Features` (nor a struct that it contains, VUID-VkDeviceCreateInfo-pNext-02830),
-    /// `VkPhysicalDeviceMaintenance4Features` or `VkPhysicalDeviceVulkan13Features` is chained to it already: if the engine
+    /// `VkPhysicalDeviceMultiviewFeatures`, `VkPhysicalDeviceVulkan11Features`, `VkPhysicalDeviceMaintenance4Features`,
+    /// `VkPhysicalDeviceDynamicRenderingFeatures` or `VkPhysicalDeviceVulkan13Features` is chained to it already: if the engine
     /// has these, [`Support::require`] sets the features in them.
     pub unsafe fn chain<'a>(
         &'a mut self,
@@ -301,6 +358,10 @@ impl FeatureChain {
         if let Some(maintenance4) = &mut self.maintenance4 {
             info = info.push_next(maintenance4);
         }
+        if let Some(rendering) = &mut self.rendering {
+            info = info.push_next(rendering);
+        }
+        info = info.push_next(&mut self.multiview);
         info.push_next(&mut self.vulkan12).push_next(&mut self.core)
     }
 }

@@ -1,5 +1,6 @@
 //! What the host and the device write anew each frame: draw records, views, the scratch ring, counters, captured vertices. One a frame in flight.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use ash::vk;
@@ -8,8 +9,8 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Backend, Cut, DrawList, Residence, SurfaceOptions};
-use crate::gpu::barrier::cmd_make_visible;
+use crate::frame::{Backend, Batch, Cut, DrawList, Residence, SurfaceOptions};
+use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::patterns::Patterns;
 use crate::gpu::pipeline::control_points;
@@ -129,8 +130,7 @@ impl FrameSlot {
         let captured =
             4 + u64::from(self.options.capture_vertices) * size_of::<abi::Captured>() as u64;
         let counters = 4 * (u64::from(abi::COUNTER_BATCHES) + counters);
-        let views = u64::from(abi::VIEWS) * size_of::<abi::View>() as u64;
-        let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER | target;
+        let views = u64::from(self.options.views) * size_of::<abi::View>() as u64;
         let (bound, numbers) = (&mut self.bound, &mut self.numbers);
         let ring_bytes = match self.options.residence {
             Residence::Ring => self.options.ring_bytes,
@@ -143,7 +143,7 @@ impl FrameSlot {
                 bound.add(maker, "ring counters", counters, storage | copied, local)?;
             numbers.counted = bound.add(maker, "counted", 8, copied, host)?;
             numbers.capture = bound.add(maker, "capture", captured, storage | copied, host)?;
-            numbers.views = bound.add(maker, "views", views, uniform, local)?;
+            numbers.views = bound.add(maker, "views", views, storage | target, local)?;
         }
         let mut sets = Vec::new();
         for pass in &prepared.passes {
@@ -170,7 +170,7 @@ impl FrameSlot {
                 Binding::storage(abi::BINDING_DRAWS, draws),
                 Binding::storage(abi::BINDING_CAPTURE, capture),
                 Binding::storage(abi::BINDING_INSTANCES, instances),
-                Binding::uniform(abi::BINDING_VIEWS, numbers.views, 0, views),
+                Binding::storage(abi::BINDING_VIEWS, numbers.views),
             ]);
         }
         // Until something is read back there are no counts, and nothing is captured.
@@ -276,13 +276,23 @@ impl FrameSlot {
     }
 
     /// # Errors
-    /// [`Misuse::View`] for one that `cmd_prepare` was not given.
-    pub(super) fn check_view(&self, view: u32) -> Result<()> {
-        let views = self.views.load(Ordering::Relaxed);
-        if view < views {
-            return Ok(());
+    /// [`Misuse::View`] for some that `cmd_prepare` was not given; [`Misuse::ViewsInRing`] and [`Misuse::ManyViews`] for a batch that cannot be
+    /// drawn with so many at once.
+    pub(super) fn check_views(&self, views: &Range<u32>, batch: Batch<'_>) -> Result<()> {
+        let given = self.views.load(Ordering::Relaxed);
+        if views.end > given {
+            let (view, views) = (views.end - 1, given);
+            return Err(Error::Misuse(Misuse::View { view, views }));
         }
-        Err(Error::Misuse(Misuse::View { view, views }))
+        if views.len() > 1 && batch.points() > 0 {
+            return Err(Error::Misuse(Misuse::ViewsInRing));
+        }
+        let patches = batch.patches().end;
+        if u64::from(views.end) * u64::from(patches) > 1 << 32 {
+            let views = views.end;
+            return Err(Error::Misuse(Misuse::ManyViews { views, patches }));
+        }
+        Ok(())
     }
 
     /// Records what a frame needs before its render passes: its views, counters at zero, and the ring free of earlier frames' use.
@@ -290,7 +300,7 @@ impl FrameSlot {
     /// It waits for the control and evaluation shaders (or whatever evaluates patches) of all earlier commands on the queue.
     ///
     /// # Errors
-    /// [`Misuse::View`] for more views than [`abi::VIEWS`]; nothing has been recorded then.
+    /// [`Misuse::View`] for more views than the options' [`views`](SurfaceOptions::views); nothing has been recorded then.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made this slot, outside of a render pass, and is submitted to the queue of the slot's earlier
@@ -302,8 +312,8 @@ impl FrameSlot {
         views: &[View],
     ) -> Result<()> {
         let count = views.len() as u32;
-        if count > abi::VIEWS {
-            let (view, views) = (count - 1, abi::VIEWS);
+        if count > self.options.views {
+            let (view, views) = (count - 1, self.options.views);
             return Err(Error::Misuse(Misuse::View { view, views }));
         }
         let views: Vec<abi::View> = views.iter().map(View::record).collect();
@@ -315,9 +325,10 @@ impl FrameSlot {
         // SAFETY: this function's contract; neither command is allowed inside a render pass, hence this function.
         unsafe {
             cmd_make_visible(device, cmd, seeing | transfer, transfer, write);
-            if count > 0 {
-                let buffer = self.bound.buffer(self.numbers.views).raw();
-                device.cmd_update_buffer(cmd, buffer, 0, bytemuck::cast_slice(&views));
+            let buffer = self.bound.buffer(self.numbers.views).raw();
+            let parts = bytemuck::cast_slice(&views).chunks(MOST_UPDATED);
+            for (place, part) in (0u64..).zip(parts) {
+                device.cmd_update_buffer(cmd, buffer, place * MOST_UPDATED as u64, part);
             }
             device.cmd_fill_buffer(cmd, self.counters_buffer().raw(), 0, vk::WHOLE_SIZE, 0);
             device.cmd_fill_buffer(cmd, self.capture_buffer().raw(), 0, 4, 0);
@@ -325,8 +336,7 @@ impl FrameSlot {
                 let counts = self.bound.buffer(counts).raw();
                 device.cmd_fill_buffer(cmd, counts, 0, vk::WHOLE_SIZE, 0);
             }
-            let read = RING_ACCESS | vk::AccessFlags::UNIFORM_READ;
-            cmd_make_visible(device, cmd, transfer | stages, seeing, read);
+            cmd_make_visible(device, cmd, transfer | stages, seeing, RING_ACCESS);
         }
         self.views.store(count, Ordering::Relaxed);
         Ok(())

@@ -2,74 +2,19 @@
 
 use ash::vk;
 
-use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::{Enabled, Layout, failed, shaders};
+use crate::gpu::target::{Attachments, Fill, PipelineOptions};
+use crate::gpu::{Layout, failed, shaders};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::Spacing;
-
-/// What pipelines draw into.
-#[derive(Clone, Copy, Debug)]
-pub struct Target {
-    /// The render pass; its subpass 0 has one colour attachment and depth, and depends on itself as
-    /// [`ring_dependency`](super::ring::ring_dependency) says.
-    pub render_pass: vk::RenderPass,
-    /// Its samples a pixel.
-    pub samples: vk::SampleCountFlags,
-    /// Which triangles are left out. The front of a surface is where its faces are counter-clockwise, whoever cuts them.
-    pub cull: vk::CullModeFlags,
-    /// How depths are compared; what passes is written. `LESS_OR_EQUAL` for pictures as they come. After a pre-pass `EQUAL`, which is exact: our
-    /// shaders' positions are `invariant`, so all pipelines of one backend and spacing have the same depths. For reversed depths
-    /// `GREATER_OR_EQUAL`.
-    pub compare: vk::CompareOp,
-}
-
-/// What the colours of our own fragment shader mean. A constant of the pipeline: fragments do not pay for what others are shaded by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shading {
-    /// A lit surface.
-    #[default]
-    Lit,
-    /// The normal's direction.
-    Normal,
-    /// A colour for each patch.
-    Patch,
-    /// The kind of node that a point was evaluated in.
-    Node,
-    /// The valences of the face's vertices.
-    Valence,
-}
-
-impl Shading {
-    fn code(self) -> u32 {
-        match self {
-            Shading::Lit => abi::SHADING_LIT,
-            Shading::Normal => abi::SHADING_NORMAL,
-            Shading::Patch => abi::SHADING_PATCH,
-            Shading::Node => abi::SHADING_NODE,
-            Shading::Valence => abi::SHADING_VALENCE,
-        }
-    }
-}
-
-/// What becomes of the triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
-    /// They are filled.
-    Solid(Shading),
-    /// Their edges are drawn in one dark colour, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
-    Lines,
-    /// Their depths alone count: there is no fragment shader and no colour. For pre-passes and shadow maps.
-    Depth,
-    /// Nothing: only what is captured counts.
-    Discard,
-}
 
 /// The pipelines of a prepared model, one a pass, for one backend and spacing.
 #[derive(Debug)]
 pub struct Pipelines {
     pipelines: Vec<vk::Pipeline>,
+    /// Their layout, where it is the engine's.
+    layout: Option<vk::PipelineLayout>,
     /// What they draw, where it is known.
     made_for: Option<MadeFor>,
 }
@@ -81,53 +26,53 @@ struct MadeFor {
     backend: Backend,
     residence: Residence,
     spacing: Spacing,
+    /// Views an instance has.
+    eyes: u32,
+    /// Whether they are for dynamic rendering.
+    dynamic: bool,
 }
 
 impl Pipelines {
-    /// Builds the pipelines of every pass. Viewport and scissor are dynamic states. Cache and render pass may go afterwards: any compatible
-    /// render pass will do for drawing.
+    /// Builds the pipelines of every pass. Viewport and scissor are dynamic states. Cache, render pass and the engine's module may go afterwards.
     ///
     /// # Errors
-    /// [`Misuse::Features`] when the device was created without `fillModeNonSolid` or `geometryShader` and these are needed; Vulkan's own.
+    /// [`Misuse::Features`] when the device was created without what is asked for: `fillModeNonSolid`, `geometryShader`, `dynamicRendering`,
+    /// `multiviewTessellationShader`. [`Misuse::MultiviewBackend`]. Vulkan's own.
     ///
     /// # Safety
-    /// `device` is live; `layout`, `cache` (or null) and `target` are of this device.
-    #[allow(clippy::too_many_arguments)]
+    /// `device` is live; `layout`, `cache` (or null) and all handles in `options` are of this device and as they say.
     pub unsafe fn new(
         device: &ash::Device,
         layout: &Layout,
         cache: vk::PipelineCache,
         prepared: &Prepared,
-        target: Target,
-        backend: Backend,
-        residence: Residence,
-        spacing: Spacing,
-        fill: Fill,
+        options: &PipelineOptions<'_>,
     ) -> Result<Pipelines> {
-        let enabled = layout.enabled();
-        let (lines, geometry) = (fill == Fill::Lines, backend == Backend::Geometry);
-        Enabled::require(lines, enabled.fill_mode_non_solid, "fillModeNonSolid")?;
-        Enabled::require(geometry, enabled.geometry_shader, "geometryShader")?;
+        options.check(&layout.enabled())?;
+        let own = options.fragment.map(|fragment| fragment.layout);
+        let attachments = options.target.attachments;
         let mut pipelines = Pipelines {
             pipelines: Vec::new(),
+            layout: own,
             made_for: Some(MadeFor {
                 shaders: prepared.passes.iter().map(|pass| pass.shader).collect(),
-                backend,
-                residence,
-                spacing,
+                backend: options.backend,
+                residence: options.residence,
+                spacing: options.spacing,
+                eyes: options.target.eyes(),
+                dynamic: matches!(attachments, Attachments::Dynamic { .. }),
             }),
         };
         for pass in &prepared.passes {
-            let shader = shader(pass, residence);
-            let modules = modules(shader, backend, spacing, fill)?;
             let plan = PipelinePlan {
-                backend,
-                control_points: control_points(pass, residence),
-                target,
-                fill,
+                options,
+                control_points: control_points(pass, options.residence),
+                layout: own.unwrap_or(layout.pipeline()),
             };
+            let modules = modules(pass, options);
             // SAFETY: this function's contract.
-            match unsafe { plan.build(device, layout, cache, &modules) } {
+            let made = modules.and_then(|modules| unsafe { plan.build(device, cache, &modules) });
+            match made {
                 Ok(pipeline) => pipelines.pipelines.push(pipeline),
                 Err(error) => {
                     // SAFETY: nothing has used them.
@@ -141,16 +86,20 @@ impl Pipelines {
 
     /// Pipelines of the engine's own, one a pass of [`Prepared`] in order: other shaders, other targets, other states.
     ///
-    /// They are drawn like any others. [`destroy`](Self::destroy) destroys them; an engine that keeps its handles drops this instead.
+    /// They are drawn like any others; sets 0 to 2 are bound with `layout`, which is theirs, or with [`Layout::pipeline`] for None. [`destroy`](Self::destroy) destroys them; an engine that keeps its handles drops this instead.
     ///
     /// # Safety
     /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
-    /// surface's backend draws. Its layout is
-    /// compatible with [`Layout::pipeline`] for sets 0 to 2 and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
+    /// surface's backend draws. Its layout is `layout`, or one that is
+    /// compatible with [`Layout::pipeline`] for sets 0 to 2, and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
     /// `abi::Frame` and these sets as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
-    pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>) -> Pipelines {
+    pub unsafe fn from_raw(
+        pipelines: Vec<vk::Pipeline>,
+        layout: Option<vk::PipelineLayout>,
+    ) -> Pipelines {
         Pipelines {
             pipelines,
+            layout,
             made_for: None,
         }
     }
@@ -182,6 +131,21 @@ impl Pipelines {
             .ok_or(Error::Misuse(Misuse::OtherPipelines))
     }
 
+    /// Their layout, where it is the engine's.
+    pub(super) fn layout(&self) -> Option<vk::PipelineLayout> {
+        self.layout
+    }
+
+    /// How many views an instance has: one, but with multiview.
+    pub(super) fn eyes(&self) -> u32 {
+        self.made_for.as_ref().map_or(1, |own| own.eyes)
+    }
+
+    /// Whether they are known to be for dynamic rendering.
+    pub(super) fn are_dynamic(&self) -> bool {
+        self.made_for.as_ref().is_some_and(|own| own.dynamic)
+    }
+
     /// The pipeline of a pass; None where there is no such pass.
     pub fn get(&self, pass: usize) -> Option<vk::Pipeline> {
         self.pipelines.get(pass).copied()
@@ -199,9 +163,6 @@ impl Pipelines {
     }
 }
 
-/// A stage and the words of its module.
-type Module = (vk::ShaderStageFlags, &'static [u32]);
-
 /// The file that evaluates a pass's patches.
 fn shader(pass: &Pass, residence: Residence) -> &'static str {
     match residence {
@@ -218,17 +179,22 @@ pub(super) fn control_points(pass: &Pass, residence: Residence) -> u32 {
     }
 }
 
-/// The modules of a method's pipeline.
-fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Result<Vec<Module>> {
+/// The modules of ours that a pass's pipeline has, by name.
+fn names(pass: &Pass, options: &PipelineOptions<'_>) -> Vec<(vk::ShaderStageFlags, String)> {
     use vk::ShaderStageFlags as Stage;
-    let evaluation = format!("{}.tese", spacing.name());
-    let mut stages = match backend {
+    let method = shader(pass, options.residence);
+    let views = match options.target.view_mask {
+        0 => "",
+        _ => "multiview.",
+    };
+    let spacing = options.spacing.name();
+    let mut stages = match options.backend {
         Backend::Tessellator => vec![
             (Stage::VERTEX, format!("{method}.vert")),
             (Stage::TESSELLATION_CONTROL, format!("{method}.tesc")),
             (
                 Stage::TESSELLATION_EVALUATION,
-                format!("{method}.{evaluation}"),
+                format!("{method}.{views}{spacing}.tese"),
             ),
         ],
         Backend::Pattern => vec![(Stage::VERTEX, format!("{method}.pattern.vert"))],
@@ -238,10 +204,19 @@ fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Resu
         ],
     };
     // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours); depths need none.
-    if matches!(fill, Fill::Solid(_) | Fill::Lines) {
+    let shaded = matches!(options.fill, Fill::Solid(_) | Fill::Lines);
+    if shaded && options.fragment.is_none() {
         stages.push((Stage::FRAGMENT, format!("{method}.frag")));
     }
-    let found = stages.into_iter().map(|(stage, name)| {
+    stages
+}
+
+/// A stage and the words of its module.
+type Module = (vk::ShaderStageFlags, &'static [u32]);
+
+/// The modules of ours that a pass's pipeline has.
+fn modules(pass: &Pass, options: &PipelineOptions<'_>) -> Result<Vec<Module>> {
+    let found = names(pass, options).into_iter().map(|(stage, name)| {
         let words = shaders::spirv(&name);
         let words =
             words.ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))?;
@@ -251,20 +226,18 @@ fn modules(method: &str, backend: Backend, spacing: Spacing, fill: Fill) -> Resu
 }
 
 /// What a pipeline is made of, its shaders aside.
-struct PipelinePlan {
-    backend: Backend,
+struct PipelinePlan<'a> {
+    options: &'a PipelineOptions<'a>,
     control_points: u32,
-    target: Target,
-    fill: Fill,
+    layout: vk::PipelineLayout,
 }
 
-impl PipelinePlan {
+impl PipelinePlan<'_> {
     /// # Safety
     /// As [`Pipelines::new`].
     unsafe fn build(
         &self,
         device: &ash::Device,
-        layout: &Layout,
         cache: vk::PipelineCache,
         modules: &[Module],
     ) -> Result<vk::Pipeline> {
@@ -281,7 +254,7 @@ impl PipelinePlan {
         let pipeline = match problem {
             Some(problem) => Err(problem),
             // SAFETY: this function's contract.
-            None => unsafe { self.assemble(device, layout, cache, &made) },
+            None => unsafe { self.assemble(device, cache, &made) },
         };
         for (_, module) in made {
             // SAFETY: modules are not needed once the pipeline is there.
@@ -295,54 +268,35 @@ impl PipelinePlan {
     unsafe fn assemble(
         &self,
         device: &ash::Device,
-        layout: &Layout,
         cache: vk::PipelineCache,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
-        let shading = self.shading().to_ne_bytes();
+        let shading = self.options.fill.shading().to_ne_bytes();
         let constants = [vk::SpecializationMapEntry::default().size(shading.len())];
         let constants = vk::SpecializationInfo::default()
             .map_entries(&constants)
             .data(&shading);
-        let stages: Vec<vk::PipelineShaderStageCreateInfo> = modules
-            .iter()
-            .map(|&(stage, module)| {
-                let info = vk::PipelineShaderStageCreateInfo::default()
-                    .stage(stage)
-                    .module(module)
-                    .name(c"main");
-                match stage {
-                    vk::ShaderStageFlags::FRAGMENT => info.specialization_info(&constants),
-                    _ => info,
-                }
-            })
-            .collect();
+        let stages = self.stages(modules, &constants);
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly =
-            vk::PipelineInputAssemblyStateCreateInfo::default().topology(match self.backend {
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(
+            match self.options.backend {
                 Backend::Tessellator => vk::PrimitiveTopology::PATCH_LIST,
                 Backend::Pattern => vk::PrimitiveTopology::TRIANGLE_LIST,
                 Backend::Geometry => vk::PrimitiveTopology::POINT_LIST,
-            });
+            },
+        );
         let tessellation = vk::PipelineTessellationStateCreateInfo::default()
             .patch_control_points(self.control_points);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let rasterization = self.rasterization();
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(self.target.samples);
-        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-            .depth_test_enable(true)
-            .depth_write_enable(true)
-            .depth_compare_op(self.target.compare);
-        // Without a fragment shader colours are undefined (Vulkan spec, "Fragment Output Interface").
-        let written = match self.fill {
-            Fill::Depth => vk::ColorComponentFlags::empty(),
-            _ => vk::ColorComponentFlags::RGBA,
-        };
-        let colour = [vk::PipelineColorBlendAttachmentState::default().color_write_mask(written)];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colour);
+        let target = &self.options.target;
+        let multisample =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(target.samples);
+        let depth = self.depth();
+        let colours = vec![self.colour(); target.attachments.colours()];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colours);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
         let mut info = vk::GraphicsPipelineCreateInfo::default()
@@ -355,39 +309,108 @@ impl PipelinePlan {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(layout.pipeline())
-            .render_pass(self.target.render_pass);
-        if self.backend == Backend::Tessellator {
+            .layout(self.layout);
+        if self.options.backend == Backend::Tessellator {
             info = info.tessellation_state(&tessellation);
         }
+        let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let info = match target.attachments {
+            Attachments::RenderPass {
+                render_pass,
+                subpass,
+                ..
+            } => info.render_pass(render_pass).subpass(subpass),
+            Attachments::Dynamic {
+                colours,
+                depth,
+                stencil,
+            } => {
+                rendering = rendering
+                    .view_mask(target.view_mask)
+                    .color_attachment_formats(colours)
+                    .depth_attachment_format(depth)
+                    .stencil_attachment_format(stencil);
+                info.push_next(&mut rendering)
+            }
+        };
         // SAFETY: everything that the info points to lives through the call and is of this device.
         let made = unsafe { device.create_graphics_pipelines(cache, &[info], None) };
         made.map(|pipelines| pipelines[0])
             .map_err(|(_, code)| failed("vkCreateGraphicsPipelines")(code))
     }
 
-    /// The constant of the fragment shader.
-    fn shading(&self) -> u32 {
-        match self.fill {
-            Fill::Solid(shading) => shading.code(),
-            Fill::Lines | Fill::Depth | Fill::Discard => abi::SHADING_LINES,
-        }
+    /// Our stages, and the engine's own fragment shader.
+    fn stages<'s>(
+        &'s self,
+        modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
+        constants: &'s vk::SpecializationInfo<'s>,
+    ) -> Vec<vk::PipelineShaderStageCreateInfo<'s>> {
+        let fragment = vk::ShaderStageFlags::FRAGMENT;
+        let of = |stage, module| {
+            vk::PipelineShaderStageCreateInfo::default()
+                .stage(stage)
+                .module(module)
+                .name(c"main")
+        };
+        let ours = modules.iter().map(|&(stage, module)| match stage {
+            vk::ShaderStageFlags::FRAGMENT => of(stage, module).specialization_info(constants),
+            _ => of(stage, module),
+        });
+        let own = self.options.fragment.as_ref();
+        let own = own.filter(|_| self.options.fill != Fill::Discard);
+        let own = own.map(|own| {
+            let info = of(fragment, own.module);
+            match own.constants {
+                Some(constants) => info.specialization_info(constants),
+                None => info,
+            }
+        });
+        ours.chain(own).collect()
+    }
+
+    fn depth(&self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+        let target = &self.options.target;
+        let none = matches!(target.attachments, Attachments::Dynamic { depth, .. }
+            if depth == vk::Format::UNDEFINED);
+        // What is equal would be written as it is: so the attachment may be one that is only read.
+        let writes = target.compare != vk::CompareOp::EQUAL;
+        vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(!none)
+            .depth_write_enable(!none && writes)
+            .depth_compare_op(target.compare)
+    }
+
+    /// Without a fragment shader colours are undefined (Vulkan spec, "Fragment Output Interface").
+    fn colour(&self) -> vk::PipelineColorBlendAttachmentState {
+        let written = match self.options.fill {
+            Fill::Depth => vk::ColorComponentFlags::empty(),
+            _ => vk::ColorComponentFlags::RGBA,
+        };
+        vk::PipelineColorBlendAttachmentState::default().color_write_mask(written)
     }
 
     fn rasterization(&self) -> vk::PipelineRasterizationStateCreateInfo<'static> {
-        let lines = self.fill == Fill::Lines;
+        let PipelineOptions { target, fill, .. } = self.options;
+        let lines = *fill == Fill::Lines;
+        // Towards the eye.
+        let front = match (lines, target.is_reversed()) {
+            (false, _) => 0.0,
+            (true, false) => -1.0,
+            (true, true) => 1.0,
+        };
+        let bias = [target.bias.constant + front, target.bias.slope + front];
         vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(if lines {
                 vk::PolygonMode::LINE
             } else {
                 vk::PolygonMode::FILL
             })
-            .rasterizer_discard_enable(self.fill == Fill::Discard)
-            .cull_mode(self.target.cull)
+            .rasterizer_discard_enable(*fill == Fill::Discard)
+            .cull_mode(target.cull)
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-            .depth_bias_enable(lines)
-            .depth_bias_constant_factor(if lines { -1.0 } else { 0.0 })
-            .depth_bias_slope_factor(if lines { -1.0 } else { 0.0 })
+            .depth_bias_enable(bias != [0.0; 2])
+            .depth_bias_constant_factor(bias[0])
+            .depth_bias_slope_factor(bias[1])
             .line_width(1.0)
     }
 }

@@ -11,6 +11,17 @@ pub(super) const STAGES: vk::ShaderStageFlags =
 /// Stages that see what is drawn.
 const DRAWING: vk::ShaderStageFlags = vk::ShaderStageFlags::ALL_GRAPHICS;
 
+/// Stages between which the ring hands on control points.
+const RING: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
+        | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw(),
+);
+
+/// Stages that evaluate patches, or cut them.
+const BEFORE_FRAGMENTS: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    RING.as_raw() | vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::GEOMETRY.as_raw(),
+);
+
 /// What a set has at a binding, and which stages see it.
 pub(super) type Slot = (u32, vk::DescriptorType, vk::ShaderStageFlags);
 
@@ -41,24 +52,45 @@ pub(super) const POSE: &[Slot] = &[
 
 /// What a frame decides, and what the device writes in it.
 pub(super) const FRAME: &[Slot] = &[
-    (abi::BINDING_SCRATCH, STORAGE, DRAWING),
-    (abi::BINDING_COUNTERS, STORAGE, DRAWING),
-    (abi::BINDING_DRAWS, STORAGE, DRAWING),
-    (abi::BINDING_CAPTURE, STORAGE, DRAWING),
-    (abi::BINDING_INSTANCES, STORAGE, DRAWING),
-    (abi::BINDING_VIEWS, UNIFORM, DRAWING),
+    (abi::BINDING_SCRATCH, STORAGE, RING),
+    (abi::BINDING_COUNTERS, STORAGE, RING),
+    (abi::BINDING_DRAWS, STORAGE, BEFORE_FRAGMENTS),
+    (abi::BINDING_CAPTURE, STORAGE, BEFORE_FRAGMENTS),
+    (
+        abi::BINDING_INSTANCES,
+        STORAGE,
+        vk::ShaderStageFlags::VERTEX,
+    ),
+    (abi::BINDING_VIEWS, STORAGE, DRAWING),
 ];
 
 /// How many storage buffers a stage sees, the one that sees most.
 pub(super) const STORAGE_BUFFERS: u32 = {
-    let mut count = 0;
-    let sets = [TABLES, POSE, FRAME];
-    let mut set = 0;
+    let stages = [
+        vk::ShaderStageFlags::VERTEX,
+        vk::ShaderStageFlags::TESSELLATION_CONTROL,
+        vk::ShaderStageFlags::TESSELLATION_EVALUATION,
+        vk::ShaderStageFlags::GEOMETRY,
+        vk::ShaderStageFlags::FRAGMENT,
+        vk::ShaderStageFlags::COMPUTE,
+    ];
+    let (mut most, mut stage) = (0, 0);
+    while stage < stages.len() {
+        let seen = storage_buffers(stages[stage]);
+        most = if seen > most { seen } else { most };
+        stage += 1;
+    }
+    most
+};
+
+/// How many storage buffers a stage sees.
+pub(super) const fn storage_buffers(stage: vk::ShaderStageFlags) -> u32 {
+    let (sets, mut set, mut count) = ([TABLES, POSE, FRAME], 0, 0);
     while set < sets.len() {
         let mut slot = 0;
         while slot < sets[set].len() {
             let (_, kind, stages) = sets[set][slot];
-            if kind.as_raw() == STORAGE.as_raw() && stages.as_raw() & DRAWING.as_raw() != 0 {
+            if kind.as_raw() == STORAGE.as_raw() && stages.as_raw() & stage.as_raw() != 0 {
                 count += 1;
             }
             slot += 1;
@@ -66,4 +98,16 @@ pub(super) const STORAGE_BUFFERS: u32 = {
         set += 1;
     }
     count
-};
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_stage_sees_more_than_eight_storage_buffers_and_fragments_leave_room_for_the_engines() {
+        assert_eq!(STORAGE_BUFFERS, 8);
+        let fragments = storage_buffers(vk::ShaderStageFlags::FRAGMENT);
+        assert!(fragments <= 4, "{fragments}");
+    }
+}

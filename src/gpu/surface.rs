@@ -1,5 +1,7 @@
 //! A prepared model on the device, in one pose and with one frame slot: what a program needs that draws a model and waits for it.
 
+use std::ops::Range;
+
 use ash::vk;
 use gpu_allocator::vulkan::Allocator;
 
@@ -82,6 +84,7 @@ impl TessellatedSurface {
             tables: &self.tables,
             pose: &self.pose,
             slot: &self.slot,
+            sets: &[],
         }
     }
 
@@ -242,12 +245,12 @@ impl TessellatedSurface {
         cmd: vk::CommandBuffer,
         layout: &Layout,
         pipelines: &Pipelines,
-        view: u32,
+        views: Range<u32>,
         batch: Batch<'_>,
     ) -> Result<()> {
         let drawing = self.drawing();
         // SAFETY: this function's contract.
-        unsafe { drawing.cmd_draw(device, cmd, layout, pipelines, view, batch) }
+        unsafe { drawing.cmd_draw(device, cmd, layout, pipelines, views, batch) }
     }
 
     /// As [`FrameSlot::cmd_read_back`].

@@ -9,8 +9,9 @@ use std::collections::HashMap;
 use ash::vk;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines,
-    PointPipeline, Residence, SurfaceOptions, Target, TessellatedSurface, View, Workaround, ring,
+    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, PipelineOptions,
+    Pipelines, PointPipeline, Residence, SurfaceOptions, Target, TessellatedSurface, View,
+    Workaround, ring,
 };
 use hullform::host::{Device, Encoding, Instance, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
@@ -145,27 +146,22 @@ impl Gpu {
         fill: Fill,
         compare: vk::CompareOp,
     ) -> Pipelines {
-        let target = Target {
-            render_pass: self.target().render_pass(),
-            samples: self.target().samples(),
-            cull: self.cull.get(),
-            compare,
+        let options = PipelineOptions {
+            target: Target {
+                samples: self.target().samples(),
+                cull: self.cull.get(),
+                compare,
+                ..Target::render_pass(self.target().render_pass())
+            },
+            backend,
+            residence,
+            spacing,
+            fill,
+            fragment: None,
         };
         let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
         // SAFETY: all of one live device.
-        let built = unsafe {
-            Pipelines::new(
-                device,
-                self.layout(),
-                cache,
-                prepared,
-                target,
-                backend,
-                residence,
-                spacing,
-                fill,
-            )
-        };
+        let built = unsafe { Pipelines::new(device, self.layout(), cache, prepared, &options) };
         built.expect("the shipped modules make pipelines")
     }
 
@@ -355,7 +351,7 @@ impl Loaded<'_> {
             for (round, &(pipelines, _)) in (0..).zip(all) {
                 for batch in list.round(round)? {
                     let (surface, layout) = (self.surface(), gpu.layout());
-                    surface.cmd_draw(device, cmd, layout, pipelines, round, batch)?;
+                    surface.cmd_draw(device, cmd, layout, pipelines, round..round + 1, batch)?;
                 }
             }
             gpu.target().end(cmd);
@@ -384,7 +380,7 @@ impl Loaded<'_> {
                 }
                 let layout = self.gpu.layout();
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0..1, batch)?;
             }
         }
         Ok(())

@@ -79,6 +79,7 @@ impl<'a> Scene<'a> {
             tables: self.tables(),
             pose: &self.instances[pose].0,
             slot: &self.instances[slot].1,
+            sets: &[],
         }
     }
 
@@ -133,7 +134,7 @@ impl<'a> Scene<'a> {
                 for (number, list) in lists.iter().enumerate() {
                     let drawing = self.drawing(number, number);
                     for batch in list.batches().filter(|batch| batch.pass() == pass) {
-                        drawing.cmd_draw(device, cmd, gpu.layout(), &pipelines, 0, batch)?;
+                        drawing.cmd_draw(device, cmd, gpu.layout(), &pipelines, 0..1, batch)?;
                     }
                 }
                 gpu.target().end(cmd);
@@ -240,7 +241,8 @@ fn what_does_not_belong_together_is_not_drawn() {
         let drawn = gpu.device.submit(|cmd| {
             drawing.slot.cmd_prepare(device, cmd, views)?;
             gpu.target().begin(cmd, [0.0; 4]);
-            let drawn = drawing.cmd_draw(device, cmd, gpu.layout(), &pipelines, view, batch);
+            let drawn =
+                drawing.cmd_draw(device, cmd, gpu.layout(), &pipelines, view..view + 1, batch);
             gpu.target().end(cmd);
             drawn
         });
@@ -265,6 +267,7 @@ fn what_does_not_belong_together_is_not_drawn() {
         tables: other.tables(),
         pose,
         slot,
+        sets: &[],
     };
     assert_eq!(refused(strange, &[NOWHERE], 0), Some(Misuse::OtherSurface));
     let view = |view, views| Some(Misuse::View { view, views });

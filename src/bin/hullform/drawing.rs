@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use ash::vk;
 use hullform::gpu::{
-    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, Pipelines,
-    PointPipeline, Residence, Slots, SurfaceOptions, Target, TessellatedSurface, View,
+    Backend, Batch, CachePipelines, Counters, Cut, DrawList, Fill, Layout, PipelineOptions,
+    Pipelines, PointPipeline, Residence, Slots, SurfaceOptions, Target, TessellatedSurface, View,
 };
 use hullform::host::OffscreenTarget;
 use hullform::mesh::Model;
@@ -220,11 +220,17 @@ impl<'a> Drawing<'a> {
         fill: Fill,
     ) -> Result<OwnPipelines<'a>> {
         let device = self.gpu.device.raw();
-        let target = Target {
-            render_pass: target.render_pass(),
-            samples: target.samples(),
-            cull: vk::CullModeFlags::NONE,
-            compare: vk::CompareOp::LESS_OR_EQUAL,
+        let options = self.surface().options();
+        let options = PipelineOptions {
+            target: Target {
+                samples: target.samples(),
+                ..Target::render_pass(target.render_pass())
+            },
+            backend: options.backend,
+            residence: options.residence,
+            spacing,
+            fill,
+            fragment: None,
         };
         // SAFETY: all of one live device.
         let pipelines = unsafe {
@@ -233,11 +239,7 @@ impl<'a> Drawing<'a> {
                 self.layout(),
                 vk::PipelineCache::null(),
                 self.surface().prepared(),
-                target,
-                self.surface().options().backend,
-                self.surface().options().residence,
-                spacing,
-                fill,
+                &options,
             )?
         };
         Ok(OwnPipelines {
@@ -274,7 +276,7 @@ impl<'a> Drawing<'a> {
             // SAFETY: this function's contract.
             unsafe {
                 self.surface()
-                    .cmd_draw(device, cmd, layout, pipelines, 0, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, 0..1, batch)?;
             }
         }
         Ok(())

@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::Bench;
 use crate::error::Result;
-use crate::gpu::{Backend, Fill, Pipelines, Residence, Target};
+use crate::gpu::{Backend, Fill, PipelineOptions, Pipelines, Residence, Target};
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
 
@@ -46,20 +46,22 @@ impl Bench {
         cull: vk::CullModeFlags,
         cache: vk::PipelineCache,
     ) -> Result<Pipelines> {
-        let target = Target {
-            render_pass: self.target.render_pass(),
-            samples: self.target.samples(),
-            cull,
-            compare: vk::CompareOp::LESS_OR_EQUAL,
+        let (backend, residence) = makers;
+        let options = PipelineOptions {
+            target: Target {
+                samples: self.target.samples(),
+                cull,
+                ..Target::render_pass(self.target.render_pass())
+            },
+            backend,
+            residence,
+            spacing,
+            fill,
+            fragment: None,
         };
         let (device, layout) = (self.device.raw(), self.layout());
-        let (backend, residence) = makers;
         // SAFETY: all of one live device.
-        unsafe {
-            Pipelines::new(
-                device, layout, cache, prepared, target, backend, residence, spacing, fill,
-            )
-        }
+        unsafe { Pipelines::new(device, layout, cache, prepared, &options) }
     }
 
     /// Forgets all pipelines, builds new ones for a prepared model with a cache that holds `data`, and returns what the cache holds then.

@@ -1,0 +1,209 @@
+//! What pipelines are made for: attachments, states, and what becomes of the triangles.
+
+use ash::vk;
+
+use crate::abi;
+use crate::error::{Error, Misuse, Result};
+use crate::frame::{Backend, Residence};
+use crate::gpu::Enabled;
+use crate::tessellation::Spacing;
+
+/// Where pixels go. Classic render passes and dynamic rendering are equals.
+#[derive(Clone, Copy, Debug)]
+pub enum Attachments<'a> {
+    /// A subpass of a render pass. For what uses the scratch ring in several batches it depends on itself as
+    /// [`ring_dependency`](super::ring::ring_dependency) says.
+    RenderPass {
+        /// The pass; any compatible one will do for drawing.
+        render_pass: vk::RenderPass,
+        /// Which of its subpasses.
+        subpass: u32,
+        /// How many colour attachments that has.
+        colours: u32,
+    },
+    /// Dynamic rendering, by the formats of the attachments. Needs the feature `dynamicRendering`, which
+    /// [`Enabled::with_dynamic_rendering`] shows.
+    Dynamic {
+        /// Of the colours; none where depths alone count.
+        colours: &'a [vk::Format],
+        /// Of depth, `UNDEFINED` for none.
+        depth: vk::Format,
+        /// Of the stencil, `UNDEFINED` for none; that of depth, where an attachment has both.
+        stencil: vk::Format,
+    },
+}
+
+impl Attachments<'_> {
+    /// How many colours there are.
+    pub(super) fn colours(&self) -> usize {
+        match *self {
+            Attachments::RenderPass { colours, .. } => colours as usize,
+            Attachments::Dynamic { colours, .. } => colours.len(),
+        }
+    }
+}
+
+/// How depths are moved, for shadow maps: by so many of the least differences that they can have, and so many times their slope.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthBias {
+    /// In least differences.
+    pub constant: f32,
+    /// In slopes.
+    pub slope: f32,
+}
+
+/// What pipelines draw into, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// Where pixels go.
+    pub attachments: Attachments<'a>,
+    /// Multiview: the view mask of the subpass or of the rendering; 0 without. [`Backend::Tessellator`] only, and with the features that
+    /// [`Enabled::with_multiview`] shows. An instance then has a view for each bit up to the highest, in a row.
+    pub view_mask: u32,
+    /// Samples a pixel.
+    pub samples: vk::SampleCountFlags,
+    /// Which triangles are left out. The front of a surface is where its faces are counter-clockwise, whoever cuts them.
+    pub cull: vk::CullModeFlags,
+    /// How depths are compared; what passes is written, but after `EQUAL`, which leaves depths as they are. `LESS_OR_EQUAL` for pictures as they come.
+    /// After a pre-pass `EQUAL`, which is exact: our shaders' positions are `invariant`, so all pipelines of one backend and spacing have the
+    /// same depths. For reversed depths `GREATER_OR_EQUAL`.
+    pub compare: vk::CompareOp,
+    /// How depths are moved.
+    pub bias: DepthBias,
+}
+
+impl<'a> Target<'a> {
+    /// One view, one sample, all triangles, the nearest in front, depths as they are.
+    pub fn new(attachments: Attachments<'a>) -> Target<'a> {
+        Target {
+            attachments,
+            view_mask: 0,
+            samples: vk::SampleCountFlags::TYPE_1,
+            cull: vk::CullModeFlags::NONE,
+            compare: vk::CompareOp::LESS_OR_EQUAL,
+            bias: DepthBias::default(),
+        }
+    }
+
+    /// The same for subpass 0 of a render pass with one colour.
+    pub fn render_pass(render_pass: vk::RenderPass) -> Target<'static> {
+        Target::new(Attachments::RenderPass {
+            render_pass,
+            subpass: 0,
+            colours: 1,
+        })
+    }
+
+    /// Whether greater depths are nearer.
+    pub(super) fn is_reversed(&self) -> bool {
+        let reversed = [vk::CompareOp::GREATER, vk::CompareOp::GREATER_OR_EQUAL];
+        reversed.contains(&self.compare)
+    }
+
+    /// How many views an instance has.
+    pub(super) fn eyes(&self) -> u32 {
+        (32 - self.view_mask.leading_zeros()).max(1)
+    }
+}
+
+/// What the colours of our own fragment shader mean. A constant of the pipeline: fragments do not pay for what others are shaded by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// A lit surface.
+    #[default]
+    Lit,
+    /// The normal's direction.
+    Normal,
+    /// A colour for each patch.
+    Patch,
+    /// The kind of node that a point was evaluated in.
+    Node,
+    /// The valences of the face's vertices.
+    Valence,
+}
+
+impl Shading {
+    fn code(self) -> u32 {
+        match self {
+            Shading::Lit => abi::SHADING_LIT,
+            Shading::Normal => abi::SHADING_NORMAL,
+            Shading::Patch => abi::SHADING_PATCH,
+            Shading::Node => abi::SHADING_NODE,
+            Shading::Valence => abi::SHADING_VALENCE,
+        }
+    }
+}
+
+/// What becomes of the triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// They are filled.
+    Solid(Shading),
+    /// Their edges are drawn in one dark colour, a little in front of the filled ones. Needs the feature `fillModeNonSolid`.
+    Lines,
+    /// Their depths alone count: there is no colour, and no fragment shader but the engine's own. For pre-passes and shadow maps.
+    Depth,
+    /// Nothing: only what is captured counts.
+    Discard,
+}
+
+impl Fill {
+    /// The constant of our fragment shader.
+    pub(super) fn shading(self) -> u32 {
+        match self {
+            Fill::Solid(shading) => shading.code(),
+            Fill::Lines | Fill::Depth | Fill::Discard => abi::SHADING_LINES,
+        }
+    }
+}
+
+/// A fragment shader of the engine's own, in the place of ours: `main` of a module whose inputs are those of `glsl/surface.frag`, or some of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment<'a> {
+    /// The module; it may go when the pipelines are made.
+    pub module: vk::ShaderModule,
+    /// Its constants.
+    pub constants: Option<&'a vk::SpecializationInfo<'a>>,
+    /// The layout of the pipelines: sets 0 to 2 and the push constants are [`Layout`](super::Layout)'s, the sets from 3 on the engine's. It lives as
+    /// long as the pipelines.
+    pub layout: vk::PipelineLayout,
+}
+
+/// What pipelines are made for.
+#[derive(Clone, Copy, Debug)]
+pub struct PipelineOptions<'a> {
+    /// What they draw into.
+    pub target: Target<'a>,
+    /// Who cuts patches.
+    pub backend: Backend,
+    /// Where control points live.
+    pub residence: Residence,
+    /// The spacing of the cuts that are drawn.
+    pub spacing: Spacing,
+    /// What becomes of the triangles.
+    pub fill: Fill,
+    /// The engine's own fragment shader; None for ours.
+    pub fragment: Option<Fragment<'a>>,
+}
+
+impl PipelineOptions<'_> {
+    /// Whether a device can draw so.
+    ///
+    /// # Errors
+    /// [`Misuse::Features`] for what it was created without; [`Misuse::MultiviewBackend`].
+    pub(super) fn check(&self, enabled: &Enabled) -> Result<()> {
+        let (lines, geometry) = (self.fill == Fill::Lines, self.backend == Backend::Geometry);
+        let attachments = self.target.attachments;
+        let dynamic = matches!(attachments, Attachments::Dynamic { .. });
+        let multiview = self.target.view_mask != 0;
+        Enabled::require(lines, enabled.fill_mode_non_solid, "fillModeNonSolid")?;
+        Enabled::require(geometry, enabled.geometry_shader, "geometryShader")?;
+        Enabled::require(dynamic, enabled.dynamic_rendering, "dynamicRendering")?;
+        Enabled::require(multiview, enabled.multiview, "multiviewTessellationShader")?;
+        if multiview && self.backend != Backend::Tessellator {
+            let backend = self.backend.name();
+            return Err(Error::Misuse(Misuse::MultiviewBackend { backend }));
+        }
+        Ok(())
+    }
+}

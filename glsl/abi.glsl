@@ -103,6 +103,18 @@ const uint NODE_CURVE = 6u;
 const uint NODE_BASE_SHIFT = 16u;
 // In a node's kind, the use of the corner whose vertex that stencil is relative to; 0 where it is relative to the ring's first. Four bits.
 const uint NODE_ORIGIN_SHIFT = 20u;
+// In a job, which use a point is of; below it the row of a stencil, or a place in the patch's ring.
+const uint JOB_USE_SHIFT = 16u;
+// In a job, which of these it is.
+const uint JOB_KIND_SHIFT = 20u;
+// Job: a stencil.
+const uint JOB_STENCIL = 0u;
+// Job: a vertex of the ring.
+const uint JOB_VERTEX = 1u;
+// Job: the limit at a corner.
+const uint JOB_LIMIT = 2u;
+// Job: the normal at a corner.
+const uint JOB_NORMAL = 3u;
 // In its place where points are the vertices themselves.
 const uint ORIGIN_NONE = 15u;
 // The first word of a stencil: its sum is relative to the ring's first vertex.
@@ -299,10 +311,9 @@ struct Bases {
     uint controls;
     // Texture coordinates, four a patch.
     uint texture;
-    // The method's own tables.
-    uint own[4];
-    // In a pose's cache, where the slots of the pass's patches stand.
-    uint cached;
+    // The method's own tables; of control points that are cached, behind four of these, where the places of each patch's points begin, these places,
+    // and the jobs that compute points.
+    uint own[7];
 };
 
 // What a surface is seen with.

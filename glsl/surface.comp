@@ -1,7 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-// The control points of a patch a workgroup, into the cache of a pose: what a control shader computes for the ring, with the same bits.
+// Control points into the cache of a pose, one an invocation: what control shaders compute for the ring, with the same bits.
+//
+// Patches stand for jobs here, from `first_patch` to `end_patch`; `counter` is the first one's point.
 
 #define CACHED_POINTS
 
@@ -10,10 +12,10 @@
 
 layout(local_size_x = CONTROL_INVOCATIONS) in;
 
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer JobTable { uvec2 jobs[]; };
+
 void main() {
-    uint number = frame.first_patch + gl_WorkGroupID.x;
+    uint number = frame.first_patch + gl_GlobalInvocationID.x;
     if (number >= frame.end_patch) return;
-    Patch record = patch_record(number);
-    uint level = required_level(patch_levels(number, record));
-    run_stencils(record, slot_of(number), level, scratch_points(record, level));
+    cached[frame.counter + gl_GlobalInvocationID.x] = job_point(jobs[bases.own[6] + number]);
 }

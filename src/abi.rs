@@ -214,6 +214,18 @@ constants! {
     NODE_BASE_SHIFT = 16;
     /// In a node's kind, the use of the corner whose vertex that stencil is relative to; 0 where it is relative to the ring's first. Four bits.
     NODE_ORIGIN_SHIFT = 20;
+    /// In a job, which use a point is of; below it the row of a stencil, or a place in the patch's ring.
+    JOB_USE_SHIFT = 16;
+    /// In a job, which of these it is.
+    JOB_KIND_SHIFT = 20;
+    /// Job: a stencil.
+    JOB_STENCIL = 0;
+    /// Job: a vertex of the ring.
+    JOB_VERTEX = 1;
+    /// Job: the limit at a corner.
+    JOB_LIMIT = 2;
+    /// Job: the normal at a corner.
+    JOB_NORMAL = 3;
     /// In its place where points are the vertices themselves.
     ORIGIN_NONE = 15;
     /// The first word of a stencil: its sum is relative to the ring's first vertex.
@@ -419,10 +431,9 @@ structs! {
         controls: u32,
         /// Texture coordinates, four a patch.
         texture: u32,
-        /// The method's own tables.
-        own: [u32; 4],
-        /// In a pose's cache, where the slots of the pass's patches stand.
-        cached: u32,
+        /// The method's own tables; of control points that are cached, behind four of these, where the places of each patch's points begin, these places,
+        /// and the jobs that compute points.
+        own: [u32; 7],
     }
 
     /// What a surface is seen with.

@@ -74,7 +74,7 @@ impl<'g> Model<'g> {
         let (device, cache) = (&gpu.device, vk::PipelineCache::null());
         let allocator = || gpu.allocator();
         // SAFETY: layout and allocator are of this device, here and below; see `Gpu::buffer` for the end.
-        let tables = unsafe { Tables::new(device, &mut allocator(), layout, prepared)? };
+        let tables = unsafe { Tables::new(device, &mut allocator(), layout, prepared, &options)? };
         let tables = gpu.hold(tables, |gpu, tables| {
             // SAFETY: as above, here and in all such functions.
             unsafe { tables.destroy(&gpu.device, &mut gpu.allocator()) };

@@ -12,19 +12,32 @@
 
 #ifdef CACHED_POINTS
 #ifdef STAGE_COMPUTE
-layout(set = SET_POSE, binding = BINDING_POINTS, scalar) buffer Cache { vec4 scratch[]; };
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) buffer Cache { vec3 cached[]; };
 #else
-layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer Cache { vec4 scratch[]; };
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer Cache { vec3 cached[]; };
 #endif
-layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer CacheSlots { uint cache_slots[]; };
 
-// Where the slot of a patch begins.
-uint slot_of(uint number) { return cache_slots[bases.cached + number]; }
+// Where what a patch has of places begins.
+uint slot_of(uint number) { return words[bases.own[4] + number]; }
+
+// Among these places, those of a use's points.
+uint use_points(uint slot, uint number) { return words[bases.own[5] + slot + number]; }
+
+// What the points of a use are relative to where their plan says nothing else.
+vec3 use_origin(uint slot, uint number) { return cached[words[bases.own[5] + slot + USES + number]]; }
+
+// The point at a place.
+vec3 point_at(uint place) { return cached[words[bases.own[5] + place]]; }
 #else
 layout(set = SET_FRAME, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
 layout(set = SET_FRAME, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };
 
 const uint NO_SLOT = 0xffffffffu;
+
+// As in a cache; here places are those in the ring.
+uint use_points(uint slot, uint number) { return slot + uint(scratch[slot + number].w); }
+vec3 use_origin(uint slot, uint number) { return scratch[slot + number].xyz; }
+vec3 point_at(uint place) { return scratch[place].xyz; }
 
 #ifdef STAGE_CONTROL
 // A slot for `points` points of a patch, or NO_SLOT when the ring has no room: the patch is not drawn then, and the overflow is counted so

@@ -39,12 +39,7 @@ vec3 control_point(Patch record, uint number) {
 #endif
 
 #if defined(STAGE_COMPUTE) || (defined(STAGE_CONTROL) && !defined(CACHED_POINTS))
-#ifdef STAGE_COMPUTE
-#define INVOCATION gl_LocalInvocationID.x
-#else
 #define INVOCATION gl_InvocationID
-#endif
-
 // Where the points of a use end in the slot, and where the slot does.
 uint points_end(Patch record, uint level, uint number) { return borders[border_of(record)].ends[min(level, HIGHEST_LEVEL)][number]; }
 uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
@@ -191,6 +186,7 @@ vec3 vertex_normal(Patch record, uint number) {
     return limit_normal == vec3(0.0) ? normal : limit_normal;
 }
 
+#ifdef STAGE_CONTROL
 // The parts of a slot: the heads, the plain vertices from USES on, the points of each use's plan.
 struct Parts {
     uint plain_end;
@@ -261,12 +257,24 @@ void run_stencils(Patch record, uint slot, uint level, uint count) {
         if (place < min(parts.ends[number], count)) scratch[slot + place].xyz = vertex_normal(record, number);
     }
 }
+#else
+// The point that a job is for.
+vec3 job_point(uvec2 job) {
+    Patch record = patches[job.x];
+    uint kind = job.y >> JOB_KIND_SHIFT;
+    uint number = min(job.y >> JOB_USE_SHIFT & 15u, USES - 1u);
+    uint row = job.y & 0xffffu;
+    if (kind == JOB_VERTEX) return ring_point(record, row);
+    if (kind == JOB_NORMAL) return vertex_normal(record, number);
+    return stencil_point(record, use_ring(record, number, row + 1u), row);
+}
+#endif
 #endif
 
 #ifdef STAGE_EVALUATION
 Row scratch_row(uint first, uint number, Basis u) {
     uvec4 row = first + node_row(number);
-    return bspline_row(u, scratch[row.x].xyz, scratch[row.y].xyz, scratch[row.z].xyz, scratch[row.w].xyz);
+    return bspline_row(u, point_at(row.x), point_at(row.y), point_at(row.z), point_at(row.w));
 }
 
 // Not on infinite creases and at cusps.
@@ -284,11 +292,10 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 #endif
     Place place = find_place(record.flags, uv);
     uint flags = borders[border_of(record)].flags[place.number];
-    vec4 head = scratch[slot + place.number];
-    uint first = slot + uint(head.w);
+    uint first = use_points(slot, place.number);
     if ((flags & USE_LIMIT) != 0u) {
-        precise vec3 vertex = scratch[first].xyz + head.xyz;
-        return Point(vertex, scratch[first + 1u].xyz);
+        precise vec3 vertex = point_at(first) + use_origin(slot, place.number);
+        return Point(vertex, point_at(first + 1u));
     }
     vec2 local = place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
     Leaf leaf = find_leaf(borders[border_of(record)].roots[place.number], local);
@@ -301,9 +308,8 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
-    vec3 base = leaf.base > 0u ? scratch[first + max(leaf.base, 1u) - 1u].xyz : vec3(0.0);
-    vec3 origin = leaf.origin > 0u && leaf.origin < USES ? scratch[slot + min(leaf.origin, USES - 1u)].xyz : head.xyz;
-    if (leaf.origin == ORIGIN_NONE) origin = vec3(0.0);
+    vec3 base = leaf.base > 0u ? point_at(first + max(leaf.base, 1u) - 1u) : vec3(0.0);
+    vec3 origin = leaf.origin == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, leaf.origin > 0u ? min(leaf.origin, USES - 1u) : place.number);
     precise vec3 position = (surface.position + base) + origin;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;

@@ -4,12 +4,12 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Cut, DrawList, Residence, SurfaceOptions};
-use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
+use crate::frame::DrawList;
+use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::points::compute_pipeline;
 use crate::gpu::sets::STAGES;
 use crate::gpu::{Layout, Pose, Tables};
-use crate::method::Prepared;
+use crate::method::{Jobs, Prepared};
 
 /// Workgroups of a dispatch that every device takes (Vulkan spec, "Required Limits", `maxComputeWorkGroupCount`).
 const MOST_GROUPS: u32 = 65_535;
@@ -17,69 +17,29 @@ const MOST_GROUPS: u32 = 65_535;
 /// What is known of a pose's cache.
 #[derive(Debug)]
 pub(super) struct Cache {
-    /// The deepest plan level that it has room for.
-    deepest: u32,
-    bytes: u64,
-    /// The plan level whose points it has; None where it has none of the present positions.
+    /// The plan level up to which it has the points of the present positions; None where it has none.
     level: Option<u32>,
-    /// The plan level by which slots are placed, and the points in them.
-    placed: Option<(u32, u32)>,
+    bytes: u64,
 }
 
 impl Cache {
     /// None where control points are not cached.
-    pub fn new(prepared: &Prepared, options: &SurfaceOptions) -> Option<Cache> {
-        let cached = options.residence == Residence::Cache;
-        cached.then(|| {
-            let cuts = options.greatest_cuts().into_iter();
-            let levels = cuts.map(|cut| options.backend.cut(cut).cached_level(prepared));
-            let deepest = levels.max().unwrap_or(0);
-            let slots = Slots::new(prepared, deepest);
-            Cache {
-                deepest,
-                bytes: 16 * u64::from(slots.end),
-                level: None,
-                placed: None,
-            }
+    pub fn new(tables: &Tables) -> Option<Cache> {
+        let (deepest, points) = tables.cached()?;
+        Some(Cache {
+            level: None,
+            bytes: POINT_BYTES * u64::from(points.count(*deepest)),
         })
     }
 
-    /// Its bytes: where slots begin, then points.
+    /// Its bytes.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 }
 
-/// Where in a cache the slots of all patches that have one begin, in points from its beginning.
-struct Slots {
-    starts: Vec<u32>,
-    end: u32,
-    /// Points in them.
-    points: u32,
-}
-
-impl Slots {
-    fn new(prepared: &Prepared, level: u32) -> Slots {
-        let cut = Cut::of_plan_level(level);
-        let passes = prepared.passes.iter().filter(|pass| pass.cached.is_some());
-        let patches: u32 = passes.clone().map(|pass| pass.cached_patches()).sum();
-        // Four words are a point's room.
-        let first = patches.div_ceil(4);
-        let mut end = first;
-        let mut starts = Vec::with_capacity(patches as usize);
-        for pass in passes {
-            for patch in 0..pass.patches.len() {
-                starts.push(end);
-                end += cut.points(pass, patch);
-            }
-        }
-        Slots {
-            starts,
-            end,
-            points: end - first,
-        }
-    }
-}
+/// Three floats.
+const POINT_BYTES: u64 = 12;
 
 /// The pipelines that fill caches, one a pass that has any.
 #[derive(Debug)]
@@ -149,12 +109,12 @@ impl Pose {
     /// Says that commands of [`cmd_cache`](Self::cmd_cache) were never executed: there is nothing in the cache.
     pub fn forget_cache(&mut self) {
         if let Some(cache) = &mut self.cache {
-            (cache.level, cache.placed) = (None, None);
+            cache.level = None;
         }
     }
 
-    /// Records the computation of all control points that a list is drawn with, if they are not in the cache already: for a list of the same level
-    /// or a lower one, and positions that have not changed, nothing. Returns how many are computed.
+    /// Records the computation of all control points that a list is drawn with and that are not in the cache already: for a list of the same level or a
+    /// lower one, and positions that have not changed, none; for one of a higher level, those of the levels between. Returns how many are computed.
     ///
     /// They count as cached from here on: if the commands are never executed, say so by [`forget_cache`](Self::forget_cache).
     ///
@@ -179,30 +139,34 @@ impl Pose {
     ) -> Result<u32> {
         self.check(tables)?;
         let prepared = tables.prepared();
-        let cache = self.cache.as_ref().zip(list.cached_level());
-        let Some((cache, needed)) = cache.filter(|(cache, needed)| *needed <= cache.deepest) else {
+        let cache = self.cache.as_mut().zip(list.cached_level());
+        let cached = cache.zip(tables.cached());
+        let Some(((cache, needed), (_, points))) =
+            cached.filter(|((_, needed), (deepest, _))| needed <= deepest)
+        else {
             return Err(Error::Misuse(Misuse::NotCached));
         };
         let shaders = prepared.passes.iter().map(|pass| pass.shader);
         if !shaders.eq(pipelines.shaders.iter().copied()) {
             return Err(Error::Misuse(Misuse::OtherPipelines));
         }
-        if cache.level.is_some_and(|level| needed <= level) {
+        let first = cache.level.map_or(0, |level| level + 1);
+        if needed < first {
             return Ok(0);
         }
-        // Where slots begin depends on the level alone: what moves from frame to frame finds them in place.
-        let placed = cache.placed.filter(|&(level, _)| level == needed);
-        let slots = placed.is_none().then(|| Slots::new(prepared, needed));
-        let points = placed.map(|(_, points)| points);
-        let points = points.or(slots.as_ref().map(|slots| slots.points));
-        let starts = slots.as_ref().map_or(&[][..], |slots| &slots.starts);
+        cache.level = Some(needed);
+        let jobs: Vec<(usize, Jobs)> = (0..)
+            .zip(&points.passes)
+            .flat_map(|(pass, own)| {
+                let levels = &own.jobs[first as usize..=needed as usize];
+                levels.iter().map(move |&jobs| (pass, jobs))
+            })
+            .filter(|(_, jobs)| jobs.count > 0)
+            .collect();
         // SAFETY: this function's contract.
-        unsafe { self.cmd_fill(device, cmd, layout, pipelines, tables, (needed, starts)) };
-        let points = points.unwrap_or(0);
-        if let Some(cache) = &mut self.cache {
-            (cache.level, cache.placed) = (Some(needed), Some((needed, points)));
-        }
-        Ok(points)
+        unsafe { self.cmd_fill(device, cmd, layout, pipelines, tables, &jobs) };
+        let known = first.checked_sub(1).map_or(0, |level| points.count(level));
+        Ok(points.count(needed) - known)
     }
 
     /// # Safety
@@ -214,57 +178,43 @@ impl Pose {
         layout: &Layout,
         pipelines: &CachePipelines,
         tables: &Tables,
-        (level, starts): (u32, &[u32]),
+        jobs: &[(usize, Jobs)],
     ) {
-        let (compute, transfer) = (
-            vk::PipelineStageFlags::COMPUTE_SHADER,
-            vk::PipelineStageFlags::TRANSFER,
-        );
-        let buffer = self.computed();
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let readers = self.readers();
-        // Synchronization is a matter of whole buffers: dispatches write points behind the slots, each those of its own patches.
         let read = vk::AccessFlags::SHADER_READ;
-        let both = read | vk::AccessFlags::SHADER_WRITE;
-        let words: &[u8] = bytemuck::cast_slice(starts);
+        let write = vk::AccessFlags::SHADER_WRITE;
+        // Draws of earlier frames have read what is written now, and their own cache was written before.
         // SAFETY: this function's contract.
-        unsafe {
-            let write = vk::AccessFlags::TRANSFER_WRITE | vk::AccessFlags::SHADER_WRITE;
-            cmd_make_visible(device, cmd, readers | compute, transfer | compute, write);
-            for (place, part) in (0u64..).zip(words.chunks(MOST_UPDATED)) {
-                device.cmd_update_buffer(cmd, buffer, place * MOST_UPDATED as u64, part);
-            }
-            cmd_make_visible(device, cmd, transfer, readers | compute, both);
-        }
+        unsafe { cmd_make_visible(device, cmd, readers | compute, compute, write) };
         let bind = vk::PipelineBindPoint::COMPUTE;
         let mut again = false;
-        let passes = tables.prepared().passes.iter().zip(&pipelines.pipelines);
-        for (number, (pass, &pipeline)) in passes.enumerate() {
-            let patches = pass.cached_patches();
-            if patches == 0 {
-                continue;
-            }
-            let sets = [tables.set(number), self.set()];
+        for &(pass, jobs) in jobs {
+            let sets = [tables.set(pass), self.set()];
             // SAFETY: as above.
             unsafe {
-                device.cmd_bind_pipeline(cmd, bind, pipeline);
+                device.cmd_bind_pipeline(cmd, bind, pipelines.pipelines[pass]);
                 device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &sets, &[]);
             }
-            for first in (0..patches).step_by(MOST_GROUPS as usize) {
-                let end = patches.min(first + MOST_GROUPS);
+            let most = MOST_GROUPS * abi::CONTROL_INVOCATIONS;
+            for done in (0..jobs.count).step_by(most as usize) {
+                let count = most.min(jobs.count - done);
+                // What a cache is filled by has no draw: patches stand for jobs, and the counter for the first point.
                 let frame = abi::Frame {
-                    level: Cut::of_plan_level(level).level,
-                    first_patch: first,
-                    end_patch: end,
+                    first_patch: jobs.first + done,
+                    end_patch: jobs.first + done + count,
+                    counter: jobs.first_point + done,
                     ..abi::Frame::default()
                 };
                 let constants = bytemuck::bytes_of(&frame);
                 // SAFETY: as above.
                 unsafe {
                     if std::mem::replace(&mut again, true) {
-                        cmd_make_visible(device, cmd, compute, compute, both);
+                        // Synchronization is a matter of whole buffers, though each dispatch writes points of its own.
+                        cmd_make_visible(device, cmd, compute, compute, write);
                     }
                     device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
-                    device.cmd_dispatch(cmd, end - first, 1, 1);
+                    device.cmd_dispatch(cmd, count.div_ceil(abi::CONTROL_INVOCATIONS), 1, 1);
                 }
             }
         }

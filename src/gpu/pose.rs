@@ -6,7 +6,7 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::SurfaceOptions;
+use crate::frame::{Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::cache::Cache;
 use crate::gpu::staging::{Staging, cmd_copy};
@@ -27,11 +27,12 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Makes buffers and a descriptor set for control vertices in local units; of the options count where control points live, and the greatest level.
+    /// Makes buffers and a descriptor set for control vertices in local units; of the options counts where control points live.
     /// Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
     ///
     /// # Errors
-    /// [`Misuse::Count`] when the number of positions is not that of the model; [`Misuse::BufferTooLarge`]; Vulkan's own.
+    /// [`Misuse::Count`] when the number of positions is not that of the model; [`Misuse::NotCached`] for a cache where the tables were made without;
+    /// [`Misuse::BufferTooLarge`]; Vulkan's own.
     ///
     /// # Safety
     /// `device` is live and made `tables`; `allocator` and `layout` were made for it. All commands go to queues of one family: the buffers are
@@ -46,6 +47,10 @@ impl Pose {
     ) -> Result<Pose> {
         let prepared = tables.prepared();
         prepared.check_count("positions", positions.len())?;
+        let cached = options.residence == Residence::Cache;
+        if cached && tables.cached().is_none() {
+            return Err(Error::Misuse(Misuse::NotCached));
+        }
         let mut pose = Pose {
             prepared: prepared.number(),
             bound: Bound::default(),
@@ -53,7 +58,7 @@ impl Pose {
             positions: 0,
             points: 0,
             readers: layout.readers(),
-            cache: Cache::new(prepared, options),
+            cache: cached.then(|| Cache::new(tables)).flatten(),
         };
         let mut maker = Maker {
             device,
@@ -149,11 +154,6 @@ impl Pose {
             return Ok(());
         }
         Err(Error::Misuse(Misuse::OtherSurface))
-    }
-
-    /// The buffer of what is computed from positions.
-    pub(super) fn computed(&self) -> vk::Buffer {
-        self.bound.buffer(self.points).raw()
     }
 
     /// The bytes on the device, those aside that an upload is staged in.

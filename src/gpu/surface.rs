@@ -51,7 +51,7 @@ impl TessellatedSurface {
             return Err(Error::Misuse(Misuse::OtherMesh));
         }
         // SAFETY: this function's contract.
-        let tables = unsafe { Tables::new(device, allocator, layout, prepared)? };
+        let tables = unsafe { Tables::new(device, allocator, layout, prepared, &options)? };
         // SAFETY: as above; the tables were just made.
         let slot =
             unsafe { FrameSlot::new(device, allocator, layout, &tables, workarounds, options) };

@@ -6,10 +6,11 @@ use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::Result;
+use crate::frame::{Residence, SurfaceOptions};
 use crate::gpu::Layout;
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::staging::{Staging, cmd_copy};
-use crate::method::Prepared;
+use crate::method::{CachedPoints, Prepared};
 
 /// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
 /// `minUniformBufferOffsetAlignment`).
@@ -21,13 +22,15 @@ const BASES_STRIDE: u64 = 256;
 #[derive(Debug)]
 pub struct Tables {
     prepared: Prepared,
+    /// What poses have in their caches, and up to which plan level; None where control points are not cached.
+    cached: Option<(u32, CachedPoints)>,
     bound: Bound,
     staging: Staging,
     readers: vk::PipelineStageFlags,
 }
 
 impl Tables {
-    /// Makes buffers and descriptor sets. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
+    /// Makes buffers and descriptor sets; of the options count where control points live, the backend and the greatest level. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
     ///
     /// # Errors
     /// [`Misuse::BufferTooLarge`](crate::Misuse::BufferTooLarge) where shaders would not see all; Vulkan's own.
@@ -39,9 +42,17 @@ impl Tables {
         allocator: &mut Allocator,
         layout: &Layout,
         prepared: Prepared,
+        options: &SurfaceOptions,
     ) -> Result<Tables> {
+        let cached = (options.residence == Residence::Cache).then(|| {
+            let cuts = options.greatest_cuts().into_iter();
+            let levels = cuts.map(|cut| options.backend.cut(cut).cached_level(&prepared));
+            let deepest = levels.max().unwrap_or(0);
+            (deepest, prepared.cached_points(deepest))
+        });
         let mut tables = Tables {
             prepared,
+            cached,
             bound: Bound::default(),
             staging: Staging::default(),
             readers: layout.readers(),
@@ -67,10 +78,12 @@ impl Tables {
     unsafe fn make(&mut self, maker: &mut Maker<'_>) -> Result<()> {
         let Tables {
             prepared,
+            cached,
             bound,
             staging,
             ..
         } = self;
+        let mut cached = cached.as_mut().map(|(_, cached)| cached.passes.iter_mut());
         let mut sets = Vec::new();
         let bases_bytes = BASES_STRIDE * prepared.passes.len() as u64;
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
@@ -89,14 +102,14 @@ impl Tables {
             numbers
         };
         let mut bytes = vec![0; bases_bytes as usize];
-        let mut cached = 0;
         for (offset, pass) in (0u64..)
             .step_by(BASES_STRIDE as usize)
             .zip(&prepared.passes)
         {
-            let (words, mut bases) = pass.packed();
-            bases.cached = cached;
-            cached += pass.cached_patches();
+            // On the host nobody reads them again.
+            let cached = cached.as_mut().and_then(Iterator::next);
+            let others = cached.map(|cached| std::mem::take(&mut cached.tables));
+            let (words, bases) = pass.packed(&others.unwrap_or_default());
             let words: &[u8] = bytemuck::cast_slice(&words);
             let bases = bytemuck::bytes_of(&bases);
             bytes[offset as usize..][..bases.len()].copy_from_slice(bases);
@@ -147,6 +160,11 @@ impl Tables {
     /// What was prepared.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
+    }
+
+    /// What poses have in their caches, and up to which plan level; None where control points are not cached.
+    pub(super) fn cached(&self) -> Option<&(u32, CachedPoints)> {
+        self.cached.as_ref()
     }
 
     /// The bytes on the device, those aside that an upload is staged in.

@@ -46,6 +46,7 @@
 //! `scripts/update-spirv`, its pictures as `tests/pictures.rs` says, and its lines in [the manual](crate::manual).
 
 mod bft;
+mod cached;
 mod displacement;
 mod flat;
 mod options;
@@ -74,6 +75,7 @@ use crate::mesh::{Model, Scheme};
 use crate::tessellation::Domain;
 use origin::Origin;
 
+pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
@@ -306,6 +308,8 @@ pub struct Prepared {
     pub outline: Outline,
     /// What is known about the plans, when the method has any.
     pub plans: Option<PlanStatistics>,
+    /// Tells what a cache holds of its control points.
+    cached: Option<fn(&Prepared, u32) -> CachedPoints>,
     /// What it was made of. Filled in by [`Method::prepare`].
     origin: Origin,
 }

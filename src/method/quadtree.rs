@@ -3,6 +3,7 @@
 
 mod agreement;
 mod border;
+mod cached;
 mod corner;
 mod plain;
 mod twin;
@@ -118,6 +119,7 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
     plans.build_seconds = started.elapsed().as_secs_f64();
     Ok(Prepared {
         plans: Some(plans),
+        cached: Some(cached::cached_points),
         ..Prepared::of([regular, short, long])
     })
 }

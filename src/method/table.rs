@@ -55,15 +55,16 @@ impl Placed<'_> {
 }
 
 impl Pass {
-    /// Patches, numbers of control vertices, texture coordinates, and the method's own tables: each begins at a multiple of its elements' size.
-    fn placed(&self) -> Vec<Placed<'_>> {
+    /// Patches, numbers of control vertices, texture coordinates, the method's own tables, and others: each begins at a multiple of its elements' size.
+    fn placed<'a>(&'a self, others: &'a [Table]) -> Vec<Placed<'a>> {
         let shared = [
             (size_of::<abi::Patch>(), bytemuck::cast_slice(&self.patches)),
             (size_of::<u32>(), &self.controls[..]),
             (size_of::<[f32; 2]>(), bytemuck::cast_slice(&self.texture)),
         ];
         let shared = shared.map(|(bytes, words)| (bytes / 4, words));
-        let own = self.tables.iter().map(|table| (table.stride, &table[..]));
+        let tables = self.tables.iter().chain(others);
+        let own = tables.map(|table| (table.stride, &table[..]));
         let mut end = 0usize;
         let all = shared.into_iter().chain(own).map(|(stride, words)| {
             let base = end.div_ceil(stride.max(1));
@@ -78,21 +79,19 @@ impl Pass {
         all.collect()
     }
 
-    /// How many patches have their control points in a cache, where there is one: all or none.
-    pub fn cached_patches(&self) -> u32 {
-        self.cached.map_or(0, |_| self.patches.len() as u32)
-    }
-
     /// The bytes that its tables take on a device, all in one buffer.
     pub fn table_bytes(&self) -> u64 {
-        let placed = self.placed();
+        Self::bytes(&self.placed(&[]))
+    }
+
+    fn bytes(placed: &[Placed<'_>]) -> u64 {
         placed.last().map_or(0, |last| 4 * last.range().end as u64)
     }
 
-    /// The words of that buffer, and where its tables begin there.
-    pub fn packed(&self) -> (Vec<u32>, abi::Bases) {
-        let placed = self.placed();
-        let mut words = vec![0; self.table_bytes() as usize / 4];
+    /// The words of that buffer, with other tables behind the method's own, and where its tables begin there.
+    pub fn packed(&self, others: &[Table]) -> (Vec<u32>, abi::Bases) {
+        let placed = self.placed(others);
+        let mut words = vec![0; Self::bytes(&placed) as usize / 4];
         for table in &placed {
             words[table.range()].copy_from_slice(table.words);
         }
@@ -100,8 +99,7 @@ impl Pass {
         let bases = abi::Bases {
             controls: base(1),
             texture: base(2),
-            own: [3, 4, 5, 6].map(base),
-            cached: 0,
+            own: [3, 4, 5, 6, 7, 8, 9].map(base),
         };
         (words, bases)
     }

@@ -187,33 +187,45 @@ pub(super) struct Use<'a> {
     pub(super) number: usize,
 }
 
-impl Use<'_> {
+impl<'a> Use<'a> {
     /// Whether it has a plan, or control vertices themselves.
     fn has_plan(&self) -> bool {
         self.border.sizes[self.number] > 0
     }
 
-    /// Where its control vertices are.
-    pub(super) fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
-        let vertex = |place: u32| self.pass.controls[(self.controls + place) as usize];
-        let place = |start: u32, i: u32| self.pass.controls[(start + i) as usize];
-        let vertices: Vec<u32> = match (self.border.sizes[self.number], self.number) {
-            (0, _) => (0..self.border.plain_count)
-                .map(|i| vertex(place(self.border.plain, i)))
-                .collect(),
-            (size, 0) => (0..size).map(vertex).collect(),
-            (size, number) => (0..size)
-                .map(|i| vertex(place(self.border.rings[number], i)))
-                .collect(),
+    /// The vertices of its ring; of what has no plan, those that are evaluated themselves.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = u32> {
+        let Use {
+            pass,
+            border,
+            controls,
+            number,
+            ..
+        } = *self;
+        let (start, size) = match border.sizes[number] {
+            0 => (border.plain, border.plain_count),
+            size => (border.rings[number], size),
         };
-        vertices
-            .iter()
-            .map(|&vertex| positions[vertex as usize])
+        let is_own = number == 0 && border.sizes[0] > 0;
+        (0..size).map(move |i| {
+            let place = if is_own {
+                i
+            } else {
+                pass.controls[(start + i) as usize]
+            };
+            pass.controls[(controls + place) as usize]
+        })
+    }
+
+    /// Where these are.
+    pub(super) fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        self.vertices()
+            .map(|vertex| positions[vertex as usize])
             .collect()
     }
 
     /// Stencil `number` of its plan: its first word, and its weights, with whatever comes behind.
-    pub(super) fn stencil(&self, number: u32) -> (u32, &[f32]) {
+    pub(super) fn stencil(&self, number: u32) -> (u32, &'a [f32]) {
         let size = self.border.sizes[self.number];
         let start = self.border.weights[self.number] + number * (size + 1);
         let row = &self.plans.weights[start as usize..];
@@ -232,7 +244,7 @@ impl Use<'_> {
     }
 
     /// The order in which stencils are summed.
-    fn order(&self, i: usize) -> usize {
+    pub(super) fn order(&self, i: usize) -> usize {
         if self.number > 0 {
             return i;
         }
@@ -340,7 +352,7 @@ fn reversed(basis: Basis<f32>) -> Basis<f32> {
     }
 }
 
-fn plans(pass: &Pass) -> Plans<'_> {
+pub(super) fn plans(pass: &Pass) -> Plans<'_> {
     Plans {
         nodes: bytemuck::cast_slice(&pass.tables[0]),
         points: &pass.tables[1],

@@ -1,0 +1,54 @@
+//! What a cache of control points holds: each point once, for all faces that share it.
+
+use crate::abi;
+use crate::method::{Prepared, Table};
+
+/// Levels of a cut, 0..=6: tess level 2^6 is the greatest that Vulkan promises.
+const LEVELS: usize = 7;
+
+/// The points of a cache, those of lower plan levels first, and what it takes to compute and find them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CachedPoints {
+    /// How many points the levels up to each have.
+    pub ends: [u32; LEVELS],
+    /// The products of a weight and a vertex that these take.
+    pub products: [u64; LEVELS],
+    /// The passes of what was prepared; empty for those whose points are not cached.
+    pub passes: Vec<CachedPass>,
+}
+
+/// What a cache takes of one pass.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CachedPass {
+    /// Tables behind the method's own: where each patch's places begin, its places, and jobs.
+    pub tables: Vec<Table>,
+    /// Of each level the jobs, and the point that the first one computes; the others follow.
+    pub jobs: [Jobs; LEVELS],
+}
+
+/// Jobs that compute points that follow one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Jobs {
+    /// The first job of the pass's.
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+    /// The first point.
+    pub first_point: u32,
+}
+
+impl CachedPoints {
+    /// How many points there are up to a level.
+    pub fn count(&self, level: u32) -> u32 {
+        self.ends[(level as usize).min(LEVELS - 1)]
+    }
+}
+
+impl Prepared {
+    /// What a cache holds of control points up to a plan level; nothing where no pass has any.
+    pub fn cached_points(&self, level: u32) -> CachedPoints {
+        let level = level.min(abi::HIGHEST_LEVEL).min(LEVELS as u32 - 1);
+        self.cached
+            .map_or_else(CachedPoints::default, |of| of(self, level))
+    }
+}

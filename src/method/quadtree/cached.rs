@@ -1,0 +1,374 @@
+//! The control points of irregular patches, each once.
+//!
+//! Patches share what is a sum of the same weights over the same vertices in the same order, relative to the same vertex, and therefore has the same
+//! bits; the limits and normals of corners; and copies of vertices.
+
+use std::hash::{Hash, Hasher};
+
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHasher};
+
+use crate::abi;
+use crate::method::cached::{CachedPass, CachedPoints};
+use crate::method::quadtree::twin::{Use, plans};
+use crate::method::{Pass, Prepared, Table};
+use crate::tessellation::{Spacing, levels, required_level};
+
+const USES: usize = abi::USES as usize;
+
+/// A point that a patch needs.
+#[derive(Clone, Copy)]
+struct Needed {
+    /// Of what makes points the same.
+    hash: u64,
+    /// `JOB_...`, the use, and a row of its plan or a place in the ring.
+    job: u32,
+    /// The level of a cut from which on it is needed.
+    level: u32,
+}
+
+/// What a patch needs, and where it looks for it.
+struct PatchPoints {
+    needed: Vec<Needed>,
+    /// Where the points of each use begin among `places`.
+    starts: [u32; USES],
+    /// Numbers of `needed`, and whether the point behind it is meant: the origins of the uses, the plain vertices, the points of each use.
+    places: Vec<(u32, bool)>,
+}
+
+/// A point of the cache, and the patch that computes it.
+struct Owned {
+    pass: usize,
+    patch: usize,
+    job: u32,
+    level: u32,
+}
+
+/// A patch as its points are told from others'.
+#[derive(Clone, Copy)]
+struct Patch<'a> {
+    pass: &'a Pass,
+    border: &'a abi::Border,
+    number: usize,
+}
+
+/// What a cache holds up to a plan level.
+pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
+    let patches = || {
+        let passes = prepared.passes.iter().enumerate();
+        let cached = passes.filter(|(_, pass)| pass.cached.is_some());
+        cached.flat_map(|(i, pass)| (0..pass.patches.len()).map(move |number| (i, pass, number)))
+    };
+    let all: Vec<(usize, &Pass, usize)> = patches().collect();
+    let points: Vec<PatchPoints> = all
+        .par_iter()
+        .map(|&(_, pass, number)| Patch::new(pass, number).points(deepest))
+        .collect();
+    let (owned, numbers) = shared(prepared, &all, &points);
+    let mut order: Vec<u32> = (0..owned.len() as u32).collect();
+    order.sort_by_key(|&number| {
+        let owned = &owned[number as usize];
+        (owned.level, owned.pass)
+    });
+    let mut made = CachedPoints {
+        passes: vec![CachedPass::default(); prepared.passes.len()],
+        ..CachedPoints::default()
+    };
+    let mut jobs: Vec<Vec<[u32; 2]>> = vec![Vec::new(); prepared.passes.len()];
+    let mut places = vec![0; owned.len()];
+    let mut next = 0;
+    for number in order {
+        let Owned {
+            pass,
+            patch,
+            job,
+            level,
+        } = owned[number as usize];
+        places[number as usize] = next;
+        let own = &mut made.passes[pass].jobs[level as usize];
+        if own.count == 0 {
+            (own.first, own.first_point) = (jobs[pass].len() as u32, next);
+        }
+        let patch_number = Patch::new(&prepared.passes[pass], patch);
+        for job in with_normal(job) {
+            jobs[pass].push([patch as u32, job]);
+            made.products[level as usize] += patch_number.products(job);
+            own.count += 1;
+            next += 1;
+        }
+        made.ends[level as usize] = next;
+    }
+    for level in 1..made.ends.len() {
+        made.ends[level] = made.ends[level].max(made.ends[level - 1]);
+        made.products[level] += made.products[level - 1];
+    }
+    let mut blocks: Vec<[Vec<u32>; 2]> = vec![Default::default(); prepared.passes.len()];
+    for ((&(pass, ..), points), numbers) in all.iter().zip(&points).zip(&numbers) {
+        let [starts, block] = &mut blocks[pass];
+        let first = block.len() as u32;
+        starts.push(first);
+        block.extend(points.starts.map(|start| first + abi::USES + start));
+        let place = |&(needed, second): &(u32, bool)| {
+            places[numbers[needed as usize] as usize] + u32::from(second)
+        };
+        block.extend(points.places.iter().map(place));
+    }
+    for ((pass, [starts, block]), jobs) in made.passes.iter_mut().zip(&blocks).zip(&jobs) {
+        pass.tables = vec![Table::of(starts), Table::of(block), Table::of(jobs)];
+    }
+    made
+}
+
+/// Each point once, and for each patch which these are that it needs.
+fn shared(
+    prepared: &Prepared,
+    all: &[(usize, &Pass, usize)],
+    points: &[PatchPoints],
+) -> (Vec<Owned>, Vec<Vec<u32>>) {
+    let mut owned: Vec<Owned> = Vec::new();
+    let mut known: FxHashMap<u64, u32> = FxHashMap::default();
+    let mut of_patch = |(&(pass, of, number), points): (&(usize, &Pass, usize), &PatchPoints)| {
+        let patch = Patch::new(of, number);
+        let number_of = |needed: &Needed| {
+            let own = Owned {
+                pass,
+                patch: number,
+                job: needed.job,
+                level: needed.level,
+            };
+            if let Some(&same) = known.get(&needed.hash) {
+                let other = &mut owned[same as usize];
+                let owner = Patch::new(&prepared.passes[other.pass], other.patch);
+                if patch.is_same(needed.job, owner, other.job) {
+                    other.level = other.level.min(needed.level);
+                    return same;
+                }
+            }
+            owned.push(own);
+            known.insert(needed.hash, owned.len() as u32 - 1);
+            owned.len() as u32 - 1
+        };
+        points.needed.iter().map(number_of).collect()
+    };
+    let numbers = all.iter().zip(points).map(&mut of_patch).collect();
+    (owned, numbers)
+}
+
+fn job(kind: u32, number: usize, row: u32) -> u32 {
+    kind << abi::JOB_KIND_SHIFT | (number as u32) << abi::JOB_USE_SHIFT | row
+}
+
+/// The kind of a job, its use and its row.
+fn parts(job: u32) -> (u32, usize, u32) {
+    let number = job >> abi::JOB_USE_SHIFT & 15;
+    (job >> abi::JOB_KIND_SHIFT, number as usize, job & 0xffff)
+}
+
+/// A corner's limit comes with its normal.
+fn with_normal(own: u32) -> impl Iterator<Item = u32> {
+    let (kind, number, row) = parts(own);
+    let normal = (kind == abi::JOB_LIMIT).then(|| job(abi::JOB_NORMAL, number, row));
+    std::iter::once(own).chain(normal)
+}
+
+impl<'a> Patch<'a> {
+    fn new(pass: &'a Pass, number: usize) -> Patch<'a> {
+        let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[3]);
+        let border = &borders[pass.patches[number].plan as usize];
+        Patch {
+            pass,
+            border,
+            number,
+        }
+    }
+
+    fn of(self, number: usize) -> Use<'a> {
+        Use {
+            pass: self.pass,
+            plans: plans(self.pass),
+            border: self.border,
+            controls: self.pass.patches[self.number].controls,
+            number,
+        }
+    }
+
+    /// The vertex at a place of the patch's ring.
+    fn vertex(self, place: u32) -> u32 {
+        let controls = self.pass.patches[self.number].controls;
+        self.pass.controls[(controls + place) as usize]
+    }
+
+    fn products(self, job: u32) -> u64 {
+        let (kind, number, _) = parts(job);
+        let size = u64::from(self.border.sizes[number]);
+        match kind {
+            abi::JOB_VERTEX => 0,
+            abi::JOB_NORMAL => 2 * size,
+            _ => size,
+        }
+    }
+
+    /// The plan level that a cut of one has here.
+    fn level(self, level: u32) -> u32 {
+        let Pass {
+            domain,
+            patches,
+            max_level,
+            ..
+        } = self.pass;
+        let tess_level = (1u32 << level) as f32;
+        let levels = levels(
+            *domain,
+            &patches[self.number],
+            tess_level,
+            Spacing::Equal,
+            *max_level,
+        );
+        required_level(&levels, abi::HIGHEST_LEVEL)
+    }
+
+    /// Where the points of use `number` end in a slot of some plan level.
+    fn end(self, level: u32, number: usize) -> u32 {
+        self.border.ends[level as usize][number]
+    }
+
+    /// How many points of use `number` a plan level has.
+    fn count(self, level: u32, number: usize) -> u32 {
+        let start = match number {
+            0 => abi::USES + self.border.plain_count,
+            _ => self.end(level, number - 1),
+        };
+        self.end(level, number) - start
+    }
+
+    fn points(self, deepest: u32) -> PatchPoints {
+        let levels: Vec<u32> = (0..=deepest).map(|level| self.level(level)).collect();
+        let mut points = PatchPoints {
+            needed: Vec::new(),
+            starts: [0; USES],
+            places: Vec::new(),
+        };
+        let mut copies: FxHashMap<u32, u32> = FxHashMap::default();
+        let list = |start: u32| &self.pass.controls[start as usize..];
+        let origins = (0..USES).map(|number| match number {
+            0 => 0,
+            _ if number >= 5 || self.border.sizes[number] > 0 => list(self.border.rings[number])[0],
+            _ => 0,
+        });
+        let plain = list(self.border.plain)[..self.border.plain_count as usize].iter();
+        for place in origins.chain(plain.copied()) {
+            let number = *copies.entry(place).or_insert_with(|| {
+                points.push(self, job(abi::JOB_VERTEX, 0, place), 0);
+                points.needed.len() as u32 - 1
+            });
+            points.places.push((number, false));
+        }
+        for number in 0..USES {
+            points.starts[number] = points.places.len() as u32;
+            let plan = self.border.sizes[number] > 0;
+            let is_corner = number >= 5 && plan;
+            if is_corner {
+                points.push(self, job(abi::JOB_LIMIT, number, 0), 0);
+                let own = points.needed.len() as u32 - 1;
+                points.places.extend([(own, false), (own, true)]);
+                continue;
+            }
+            let counts = levels.iter().map(|&level| self.count(level, number));
+            let counts: Vec<u32> = counts.collect();
+            for row in 0..counts.last().copied().unwrap_or(0) {
+                let level = counts.partition_point(|&count| count <= row) as u32;
+                points.push(self, job(abi::JOB_STENCIL, number, row), level);
+                points.places.push((points.needed.len() as u32 - 1, false));
+            }
+        }
+        for number in 1..USES {
+            if self.border.flags[number] & abi::USE_INSIDE != 0 {
+                points.starts[number] = points.starts[0];
+            } else if self.border.sizes[number] == 0 {
+                points.starts[number] = abi::USES;
+            }
+        }
+        points
+    }
+
+    fn hash(self, job: u32) -> u64 {
+        let mut hasher = FxHasher::default();
+        let (kind, number, row) = parts(job);
+        kind.hash(&mut hasher);
+        match kind {
+            abi::JOB_VERTEX => self.vertex(row).hash(&mut hasher),
+            abi::JOB_LIMIT => {
+                let of = self.of(number);
+                self.corner_key(number).hash(&mut hasher);
+                of.vertices().for_each(|vertex| vertex.hash(&mut hasher));
+            }
+            _ => self.terms(number, row, |term| term.hash(&mut hasher)),
+        }
+        hasher.finish()
+    }
+
+    /// What two corners have alike that get the same limit and normal from the same ring. Where those nearby have a say, which are a face's own, none are.
+    fn corner_key(self, number: usize) -> [u32; 4] {
+        let nearby = self.border.nearby[number - 5];
+        let own = match nearby {
+            abi::NO_TANGENTS => nearby,
+            _ => self.number as u32,
+        };
+        let flags = self.border.flags[number];
+        [self.border.weights[number], flags, nearby, own]
+    }
+
+    /// What a point is a sum of, after the vertex that it is relative to, in the order in which it is added. Long sums are compensated: what is
+    /// added to them counts even if it is zero.
+    fn terms(self, number: usize, row: u32, mut each: impl FnMut((u32, u32))) {
+        let of = self.of(number);
+        let vertices: smallvec::SmallVec<[u32; 32]> = of.vertices().collect();
+        let (origin, weights) = of.stencil(row);
+        let place = match origin {
+            abi::STENCIL_OWN => None,
+            corner => Some(self.pass.controls[self.border.rings[corner as usize] as usize]),
+        };
+        each((place.map_or(vertices[0], |place| self.vertex(place)), 0));
+        let compensated = vertices.len() > abi::CONTROL_INVOCATIONS as usize;
+        for i in 0..vertices.len() {
+            let place = of.order(i);
+            if weights[place] != 0.0 || compensated {
+                each((vertices[place], weights[place].to_bits()));
+            }
+        }
+    }
+
+    fn is_same(self, job: u32, other: Patch<'_>, others: u32) -> bool {
+        let ((kind, number, row), (its_kind, its_number, its_row)) = (parts(job), parts(others));
+        if kind != its_kind {
+            return false;
+        }
+        match kind {
+            abi::JOB_VERTEX => self.vertex(row) == other.vertex(its_row),
+            abi::JOB_LIMIT => {
+                let same_pass = std::ptr::eq(self.pass, other.pass);
+                let same = self.corner_key(number) == other.corner_key(its_number);
+                let (of, others) = (self.of(number), other.of(its_number));
+                same_pass && same && of.vertices().eq(others.vertices())
+            }
+            _ => {
+                let mut terms: smallvec::SmallVec<[(u32, u32); 64]> = smallvec::SmallVec::new();
+                self.terms(number, row, |term| terms.push(term));
+                let mut at = 0;
+                let mut same = true;
+                other.terms(its_number, its_row, |term| {
+                    same &= terms.get(at) == Some(&term);
+                    at += 1;
+                });
+                same && at == terms.len()
+            }
+        }
+    }
+}
+
+impl PatchPoints {
+    fn push(&mut self, patch: Patch<'_>, job: u32, level: u32) {
+        let hash = patch.hash(job);
+        self.needed.push(Needed { hash, job, level });
+    }
+}

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Result};
+use crate::mesh::topology::Topology;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
@@ -11,7 +12,7 @@ use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
 use crate::plan::strip::{self, Stretch, Strip};
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, limit_stencil};
+use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, is_plain_edge, limit_stencil};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -98,12 +99,14 @@ impl Plan {
             rows: bases.rows(base.rows.width()),
             bases,
             numbers: FxHashMap::default(),
+            edges: shared_edges(&base.topology, configuration),
             halves: Vec::new(),
         };
         let tree = builder.grow(&base).fold();
         let Builder {
             mut rows,
             mut bases,
+            edges,
             halves,
             ..
         } = builder;
@@ -116,10 +119,10 @@ impl Plan {
             &mut levels,
         );
         let nodes = tree.flatten();
-        let mut strips = match configuration.arity() {
-            4 => [0, 1, 2, 3].map(|edge| Strip::of(&nodes, edge)),
-            _ => Default::default(),
-        };
+        let mut strips: [Option<Strip>; 4] = Default::default();
+        for edge in edges {
+            strips[edge as usize] = Strip::of(&nodes, edge);
+        }
         for half in halves {
             if let Some(strip) = &mut strips[half.edge as usize] {
                 strip.replace(half.half, half.points, half.base);
@@ -146,6 +149,17 @@ impl Plan {
             })
             .collect()
     }
+}
+
+/// The edges that this face and the one on the other side may evaluate alike with points of their own: those of a quad that are not plain, which needs no plan.
+fn shared_edges(topology: &Topology, configuration: &Configuration) -> Vec<u32> {
+    let edges = topology.face_edges(0);
+    let is_shared = |&edge: &u32| {
+        let edge = edges[edge as usize];
+        topology.edge_faces(edge).len() == 2 && !is_plain_edge(topology, edge)
+    };
+    let all = 0..if configuration.arity() == 4 { 4 } else { 0 };
+    all.filter(is_shared).collect()
 }
 
 /// The weights of a corner's limit.
@@ -191,6 +205,8 @@ struct Builder {
     bases: Bases,
     /// The rows of this level's control points, for each base that they are relative to.
     numbers: FxHashMap<(Option<u32>, ControlPoint), u32>,
+    /// The edges that the other side may evaluate alike.
+    edges: Vec<u32>,
     halves: Vec<Half>,
 }
 
@@ -294,7 +310,8 @@ impl Builder {
     /// of a terminal node around it.
     fn halves(&mut self, level: &Level, quarters: &[Cell], leaves: &[Option<Leaf>]) -> Vec<Half> {
         let mut found = Vec::new();
-        for (edge, half) in (0..4).flat_map(|edge| [(edge, 0), (edge, 1)]) {
+        let edges = self.edges.clone();
+        for (edge, half) in edges.into_iter().flat_map(|edge| [(edge, 0), (edge, 1)]) {
             let [own, other] = [half, 1 - half].map(|half| (edge + half) % 4);
             let Some(Leaf::Spline(patch)) = &leaves[own as usize] else {
                 continue;
@@ -329,15 +346,16 @@ impl Builder {
     }
 }
 
-/// Where all quarters of a face but one are leaves, as around a single extraordinary vertex, the points of all four are relative to the limit at that one's
-/// corner: they are those of a terminal node.
+/// The points of a quarter that is a leaf are relative to the limit at a corner whose quarter is none, where there is one: beside its own, so that they are among
+/// the points of its star; else opposite to it. Around a single extraordinary vertex they are those of a terminal node.
 fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf>]) {
-    let mut others = quarters.iter().zip(leaves).filter(|(_, leaf)| {
-        // The last level ends with the extraordinary vertex itself.
-        !matches!(leaf, Some(Leaf::Spline(_)))
-    });
-    if let (Some((&only, _)), None) = (others.next(), others.next()) {
-        quarters.iter_mut().for_each(|quarter| quarter.base = only.base);
+    let is_leaf = |corner: u32| matches!(leaves[corner as usize], Some(Leaf::Spline(_)));
+    for (own, quarter) in (0..).zip(quarters) {
+        let others = [1, 3, 2].map(|turn| (own + turn) % 4);
+        let star = others.into_iter().find(|&corner| !is_leaf(corner));
+        if let Some(star) = star.filter(|_| is_leaf(own)) {
+            quarter.base = Some(star);
+        }
     }
 }
 

@@ -59,11 +59,7 @@ pub fn walk(plans: Plans, root: u32, uv: Vec2) -> Option<Leaf> {
 }
 
 fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {
-    let (kind, place, levels) = (
-        node.kind & 15,
-        node.kind >> 4 & 15,
-        node.kind >> 8 & 255,
-    );
+    let (kind, place, levels) = (node.kind & 15, node.kind >> 4 & 15, node.kind >> 8 & 255);
     let leaf = Leaf {
         points: node.points,
         uv,

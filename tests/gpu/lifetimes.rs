@@ -44,7 +44,8 @@ impl<'a> Scene<'a> {
         let workarounds = &gpu.device.info().workarounds;
         // SAFETY: all of one live device.
         let made = unsafe {
-            let mut tables = Tables::new(device, allocator, layout, prepared, &options).expect("it fits");
+            let mut tables =
+                Tables::new(device, allocator, layout, prepared, &options).expect("it fits");
             let instances = poses.iter().map(|positions| {
                 let pose = Pose::new(device, allocator, layout, &tables, positions, &options);
                 let slot = FrameSlot::new(device, allocator, layout, &tables, workarounds, options);

@@ -12,8 +12,8 @@ use crate::abi;
 use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
 use crate::method::quadtree::border::Irregular;
-use crate::method::quadtree::plain::is_plain_edge;
 use crate::plan::{Plan, Stretch, Strip};
+use crate::subdivision::is_plain_edge;
 
 /// A patch's edge.
 #[derive(Clone, Copy)]
@@ -33,11 +33,7 @@ pub fn is_flipped(topology: &Topology, patch: &Irregular, edge: u32) -> bool {
 }
 
 /// The edges of the mesh that need no plan.
-pub fn agreed_edges(
-    topology: &Topology,
-    patches: &[Irregular],
-    plans: &[Plan],
-) -> FxHashSet<u32> {
+pub fn agreed_edges(topology: &Topology, patches: &[Irregular], plans: &[Plan]) -> FxHashSet<u32> {
     let mut sides: FxHashMap<u32, SmallVec<[Side<'_>; 2]>> = FxHashMap::default();
     // Sums over longer rings are compensated, and so depend on the weights that are zero.
     let short = |patch: &&Irregular| {
@@ -106,7 +102,10 @@ impl Side<'_> {
         let (Some(own_points), Some(other_points)) = (own.points, others.points) else {
             return own.points == others.points;
         };
-        let points = own_points.iter().flatten().zip(other_points.iter().flatten());
+        let points = own_points
+            .iter()
+            .flatten()
+            .zip(other_points.iter().flatten());
         let mut pairs = points.chain([(&own.base, &others.base)]);
         pairs.all(|(&own, &others)| {
             self.origin(own) == other.origin(others) && self.terms(own).eq(other.terms(others))

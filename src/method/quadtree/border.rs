@@ -12,13 +12,12 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
 use crate::method::quadtree::agreement::{agreed_edges, is_flipped};
-use crate::method::quadtree::plain::{
-    edge_rows, is_plain_edge, is_plain_vertex, is_turned_corner, vertex_rows,
-};
+use crate::method::quadtree::plain::{edge_rows, is_turned_corner, vertex_rows};
 use crate::plan::{
     Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, Side, VertexKind,
     VertexPlan,
 };
+use crate::subdivision::{is_plain_edge, is_plain_vertex};
 
 /// The levels that a patch can be drawn at.
 const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
@@ -387,8 +386,7 @@ impl Builder<'_> {
                 let flipped = is_flipped(topology, patch, edge);
                 let turn = (edge + 2 * u32::from(flipped)) % 4;
                 let direction = if flipped { abi::USE_FLIPPED } else { 0 };
-                border.flags[number] =
-                    abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;
+                border.flags[number] = abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;
                 border.roots[number] = self.strip(patch.plan, edge, flipped);
                 continue;
             }

@@ -1,24 +1,7 @@
 //! Plain edges and vertices: smooth, with four quads around each vertex. They need no plans; B-splines whose sums are symmetric give the same
 //! bits to all faces around them.
 
-use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::Topology;
-
-/// Whether a vertex is smooth and has four quads around it: it needs no plan.
-pub fn is_plain_vertex(topology: &Topology, vertex: u32) -> bool {
-    let faces = topology.vertex_faces(vertex);
-    faces.len() == 4
-        && topology.vertex_edges(vertex).len() == 4
-        && faces.iter().all(|at| topology.face(at.face).len() == 4)
-        && !is_sharp(topology.vertex_sharpness(vertex))
-        && topology.sharp_edges(vertex).next().is_none()
-}
-
-/// Whether both ends of an edge are plain.
-pub fn is_plain_edge(topology: &Topology, edge: u32) -> bool {
-    let ends = topology.edge(edge).vertices;
-    ends.iter().all(|&vertex| is_plain_vertex(topology, vertex))
-}
 
 /// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
 /// vertex's edges that have the lowest number.

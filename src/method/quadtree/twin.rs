@@ -133,7 +133,11 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
         plans,
         border,
         controls,
-        number: if flags & abi::USE_INSIDE != 0 { 0 } else { number as usize },
+        number: if flags & abi::USE_INSIDE != 0 {
+            0
+        } else {
+            number as usize
+        },
     };
     if flags & abi::USE_LIMIT != 0 {
         let vertices = &given.vertices;

@@ -74,7 +74,7 @@
 //!
 //! # For engines
 //!
-//! The library borrows device and allocator, records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
+//! The library borrows device and memory (`gpu::Memory`), records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
 //! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
 //!
 //! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 8 storage

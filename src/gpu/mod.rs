@@ -14,6 +14,7 @@ pub mod features;
 mod frame_slot;
 mod indirect;
 mod layout;
+pub mod memory;
 mod patterns;
 mod pipeline;
 mod points;
@@ -39,6 +40,7 @@ pub use features::{Enabled, ExtraFeatures, FeatureChain, OptionalFeatures, Suppo
 pub use frame_slot::{Counters, FrameSlot};
 pub use indirect::{Indirect, IndirectCommands};
 pub use layout::Layout;
+pub use memory::{Memory, MemoryBlock, MemoryRequest};
 pub use pipeline::Pipelines;
 pub use points::PointPipeline;
 pub use pose::Pose;

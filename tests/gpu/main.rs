@@ -13,6 +13,7 @@ mod edges;
 mod hexagon;
 mod instances;
 mod lifetimes;
+mod memory;
 mod misuse;
 mod points;
 mod precision;

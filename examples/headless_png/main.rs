@@ -100,6 +100,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         spacing: cut.spacing,
         fill: Fill::Solid(Shading::Lit),
         fragment: None,
+        layout: None,
     };
     // SAFETY: all of one live device.
     let pipelines = unsafe { Pipelines::new(device, &layout, cache, surface.prepared(), &drawn)? };

@@ -46,6 +46,8 @@ pub use points::PointPipeline;
 pub use pose::Pose;
 pub use surface::TessellatedSurface;
 pub use tables::Tables;
-pub use target::{Attachments, DepthBias, Fill, Fragment, PipelineOptions, Shading, Target};
+pub use target::{
+    Attachments, DepthBias, Fill, Fragment, OwnLayout, PipelineOptions, Shading, Target,
+};
 pub use view::View;
 pub use workaround::{Remedy, Workaround, workarounds};

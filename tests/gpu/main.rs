@@ -15,6 +15,7 @@ mod instances;
 mod lifetimes;
 mod memory;
 mod misuse;
+mod own;
 mod points;
 mod precision;
 mod prepass;

@@ -2,12 +2,17 @@
 #ifndef ABI_GLSL
 #define ABI_GLSL
 
+// The first of our three descriptor sets; an engine that has them elsewhere compiles its own shaders with another.
+#ifndef HULLFORM_SET
+#define HULLFORM_SET 0
+#endif
+
 // The descriptor set of what topology decides: tables. Binding numbers are unique over all sets.
-const uint SET_TABLES = 0u;
+const uint SET_TABLES = HULLFORM_SET + 0u;
 // The descriptor set of what positions decide: control vertices, and the points that are computed from them.
-const uint SET_POSE = 1u;
+const uint SET_POSE = HULLFORM_SET + 1u;
 // The descriptor set of what a frame decides, and of what the device writes in it.
-const uint SET_FRAME = 2u;
+const uint SET_FRAME = HULLFORM_SET + 2u;
 // Tables, binding: one buffer a pass, of `Patch` records, then the tables of which `Bases` tells where they begin.
 const uint BINDING_TABLES = 0u;
 // Tables, binding, uniform: `Bases`.

@@ -68,11 +68,21 @@ macro_rules! constants {
             let mut text = String::new();
             $(
                 $(text += &format!("//{}\n", $doc);)*
-                text += &format!("const uint {} = {}u;\n", stringify!($name), $name);
+                text += &constant(stringify!($name), $name);
             )*
             text
         }
     };
+}
+
+/// Numbers of sets begin with a macro that an engine's own shaders are compiled with.
+fn constant(name: &str, value: u32) -> String {
+    let moved = if name.starts_with("SET_") {
+        "HULLFORM_SET + "
+    } else {
+        ""
+    };
+    format!("const uint {name} = {moved}{value}u;\n")
 }
 
 /// Declares structs, how they read in GLSL, and where their members lie.
@@ -483,7 +493,9 @@ structs! {
 pub fn glsl() -> String {
     format!(
         "// Generated from src/abi.rs; do not edit. HULLFORM_UPDATE=1 cargo test --test abi writes it anew.\n\
-         #ifndef ABI_GLSL\n#define ABI_GLSL\n\n{}{}\n#endif\n",
+         #ifndef ABI_GLSL\n#define ABI_GLSL\n\n\
+         // The first of our three descriptor sets; an engine that has them elsewhere compiles its own shaders with another.\n\
+         #ifndef HULLFORM_SET\n#define HULLFORM_SET 0\n#endif\n\n{}{}\n#endif\n",
         glsl_constants(),
         glsl_structs()
     )

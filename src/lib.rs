@@ -74,7 +74,7 @@
 //!
 //! # For engines
 //!
-//! The library borrows device and allocator, records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
+//! The library borrows device and memory (`gpu::Memory`), records, and never submits, waits or spawns a thread (preparing uses rayon's pool). What each
 //! call needs of layouts, stages and lifetimes stands in its `# Safety` section.
 //!
 //! **The device** needs Vulkan 1.2, three features, `tessellationShader`, `vertexPipelineStoresAndAtomics` and `scalarBlockLayout`, and 8 storage
@@ -110,7 +110,7 @@
 //!
 //! **Shaders of your own.** The sources are in the crate, `gpu::shaders::source("lib/quadtree.glsl")`. Include `method/quadtree.glsl` and
 //! `method/quadtree_regular.glsl` in your stages the way the shells `surface.vert`, `.tesc` and `.tese` do, build pipelines with
-//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Sets 0 to 2 are the library's, and so are all push
+//! `gpu::Layout`, and hand them in with `gpu::Pipelines::from_raw`. Sets 0 to 2 are the library's, or three that begin elsewhere (`gpu::OwnLayout`, and the macro `HULLFORM_SET`), and so are all push
 //! constants: their one range, of 32 bytes, is `gpu::Layout::push_constant_range`, which shows how to make a layout with further sets.
 //!
 //! **Skinning and morphing.** Positions are read in one function, `control_vertex` in `glsl/lib/control_vertex.glsl`. Put your own in its

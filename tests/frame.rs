@@ -168,3 +168,35 @@ fn every_patch_is_an_instance_of_a_pattern() {
     });
     assert_eq!(drawn.sum::<usize>(), all);
 }
+
+/// A ring of the bytes that a cut tells of has a batch a pass, and one that is a point smaller has more.
+#[test]
+fn a_cut_tells_the_ring_that_it_needs() {
+    let mut ringed = 0;
+    for name in ["hull", "ngons", "pole-360"] {
+        for prepared in prepared(name) {
+            for spacing in SPACINGS {
+                let cut = Cut {
+                    level: 8.0,
+                    spacing,
+                };
+                let ring_bytes = cut.ring_bytes(&prepared);
+                let batches = |ring_bytes| {
+                    let options = SurfaceOptions {
+                        ring_bytes,
+                        ..SurfaceOptions::default()
+                    };
+                    let list = DrawList::new(&prepared, &options, None, cut, None);
+                    list.map_or(usize::MAX, |list| list.batches().len())
+                };
+                assert_eq!(batches(ring_bytes), prepared.passes.len(), "{name}");
+                if ring_bytes > 0 {
+                    ringed += 1;
+                    let fewer = batches(ring_bytes - 16);
+                    assert!(fewer > prepared.passes.len(), "{name}");
+                }
+            }
+        }
+    }
+    assert!(ringed > 0);
+}

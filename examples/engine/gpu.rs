@@ -160,16 +160,6 @@ impl<T> Drop for Held<'_, T> {
     }
 }
 
-/// Waits at the end of its scope, so that what is declared before it can be destroyed.
-pub struct Idle<'g>(pub &'g Gpu);
-
-impl Drop for Idle<'_> {
-    fn drop(&mut self) {
-        // SAFETY: nobody else uses the device. A lost device counts as idle; where nothing is known there is nothing better to do.
-        let _ = unsafe { self.0.device.device_wait_idle() };
-    }
-}
-
 type Opened = (vk::PhysicalDevice, Support, ash::Device, Enabled);
 
 fn open(instance: &ash::Instance) -> Result<Opened, Box<dyn Error>> {

@@ -4,10 +4,10 @@ use std::error::Error;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use hullform::gpu::Buffer;
 
-use crate::gpu::{Gpu, Held, failed};
+use crate::gpu::{Gpu, Held};
+use crate::image::{Image, extent, image, range, write_png};
 
 pub const WIDTH: u32 = 960;
 pub const HEIGHT: u32 = 540;
@@ -16,13 +16,6 @@ pub const SAMPLES: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 pub const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const SHADOW: vk::Format = vk::Format::D16_UNORM;
-
-/// An image with its memory and view.
-pub struct Image {
-    pub raw: vk::Image,
-    pub view: vk::ImageView,
-    memory: Option<Allocation>,
-}
 
 /// All images; both frames in flight use them, one after the other.
 pub struct Images<'g> {
@@ -178,15 +171,7 @@ impl<'g> Images<'g> {
 
     /// Writes what was copied to a file.
     pub fn write_png(&self, path: &str) -> Result<(), Box<dyn Error>> {
-        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-        let mut encoder = png::Encoder::new(file, WIDTH, HEIGHT);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        let rgb = self.pixels.bytes().chunks(4).flat_map(|p| &p[..3]).copied();
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&rgb.collect::<Vec<u8>>())?;
-        Ok(writer.finish()?)
+        write_png(path, WIDTH, self.pixels.bytes())
     }
 
     /// # Safety
@@ -252,82 +237,4 @@ fn depth_attachment(view: vk::ImageView, clear: f32) -> vk::RenderingAttachmentI
         .load_op(vk::AttachmentLoadOp::CLEAR)
         .store_op(vk::AttachmentStoreOp::STORE)
         .clear_value(vk::ClearValue { depth_stencil })
-}
-
-fn extent([width, height]: [u32; 2]) -> vk::Extent3D {
-    vk::Extent3D {
-        width,
-        height,
-        depth: 1,
-    }
-}
-
-fn range(depths: bool) -> vk::ImageSubresourceRange {
-    let aspect = match depths {
-        true => vk::ImageAspectFlags::DEPTH,
-        false => vk::ImageAspectFlags::COLOR,
-    };
-    vk::ImageSubresourceRange::default()
-        .aspect_mask(aspect)
-        .level_count(1)
-        .layer_count(1)
-}
-
-fn image(
-    gpu: &Gpu,
-    format: vk::Format,
-    size: [u32; 2],
-    samples: vk::SampleCountFlags,
-    usage: vk::ImageUsageFlags,
-) -> Result<Held<'_, Image>, Box<dyn Error>> {
-    let info = vk::ImageCreateInfo::default()
-        .image_type(vk::ImageType::TYPE_2D)
-        .format(format)
-        .extent(extent(size))
-        .mip_levels(1)
-        .array_layers(1)
-        .samples(samples)
-        .usage(usage);
-    let device = &gpu.device;
-    // SAFETY: the device is live, here and below, and knows the format.
-    let raw = unsafe { device.create_image(&info, None) }.map_err(failed("vkCreateImage"))?;
-    let made = Image {
-        raw,
-        view: vk::ImageView::null(),
-        memory: None,
-    };
-    // Held from here on: if a step fails, what was made before it goes all the same.
-    let mut image = gpu.hold(made, |gpu, image| {
-        // SAFETY: see `Gpu::buffer`; null handles are fine.
-        unsafe {
-            gpu.device.destroy_image_view(image.view, None);
-            gpu.device.destroy_image(image.raw, None);
-        }
-        if let Some(memory) = image.memory {
-            let freed = gpu.allocator().free(memory);
-            freed.expect("memory goes back to the allocator it came from");
-        }
-    });
-    let memory = gpu.allocator().allocate(&AllocationCreateDesc {
-        name: "image",
-        // SAFETY: the image is the device's.
-        requirements: unsafe { device.get_image_memory_requirements(raw) },
-        location: MemoryLocation::GpuOnly,
-        linear: false,
-        allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-    });
-    let memory = image.memory.insert(memory?);
-    // SAFETY: the memory meets the image's requirements and is bound to nothing else.
-    unsafe { device.bind_image_memory(raw, memory.memory(), memory.offset()) }
-        .map_err(failed("vkBindImageMemory"))?;
-    let depths = usage.contains(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
-    let info = vk::ImageViewCreateInfo::default()
-        .image(raw)
-        .view_type(vk::ImageViewType::TYPE_2D)
-        .format(format)
-        .subresource_range(range(depths));
-    // SAFETY: the image is bound; format and aspect are its own.
-    let view = unsafe { device.create_image_view(&info, None) };
-    image.view = view.map_err(failed("vkCreateImageView"))?;
-    Ok(image)
 }

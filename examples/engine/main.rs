@@ -10,7 +10,9 @@
 //! shadow map, a pre-pass, and the picture over its depths, compared with EQUAL. The second model is skinned by a compute shader (`skin.rs`); the fragment shader
 //! is the engine's own, with a set of its own (`material.rs`). Everything renders dynamically (`images.rs`). `gpu.rs` is what every engine has anyway.
 
+mod commands;
 mod gpu;
+mod image;
 mod images;
 mod material;
 mod model;
@@ -22,7 +24,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use ash::vk;
-use gpu::{Gpu, Held, Idle, failed};
+use commands::{Commands, Idle};
+use gpu::Gpu;
 use hullform::gpu::Layout;
 use hullform::mesh::{ControlMesh, Model as Mesh, builtin, read_obj};
 use images::Images;
@@ -266,84 +269,4 @@ fn report(gpu: &Gpu, models: &[Model<'_>], wishes: &Wishes) {
         mega(all),
         gpu.name
     );
-}
-
-/// The commands of a frame in flight.
-struct Commands<'g> {
-    gpu: &'g Gpu,
-    queue: vk::Queue,
-    pool: Held<'g, vk::CommandPool>,
-    fence: Held<'g, vk::Fence>,
-    cmd: vk::CommandBuffer,
-}
-
-impl<'g> Commands<'g> {
-    fn new(gpu: &'g Gpu) -> Result<Commands<'g>, Box<dyn Error>> {
-        let device = &gpu.device;
-        let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.family);
-        // SAFETY: the device is live, here and below, and has one queue of this family.
-        let pool = unsafe { device.create_command_pool(&info, None) };
-        let pool = gpu.hold(pool.map_err(failed("vkCreateCommandPool"))?, |gpu, pool| {
-            // SAFETY: see `Gpu::buffer`.
-            unsafe { gpu.device.destroy_command_pool(pool, None) };
-        });
-        let info = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
-        // SAFETY: as above.
-        let fence = unsafe { device.create_fence(&info, None) };
-        let fence = gpu.hold(fence.map_err(failed("vkCreateFence"))?, |gpu, fence| {
-            // SAFETY: see `Gpu::buffer`.
-            unsafe { gpu.device.destroy_fence(fence, None) };
-        });
-        let info = vk::CommandBufferAllocateInfo::default()
-            .command_pool(*pool)
-            .command_buffer_count(1);
-        // SAFETY: as above.
-        let cmd = unsafe { device.allocate_command_buffers(&info) };
-        Ok(Commands {
-            gpu,
-            // SAFETY: as above.
-            queue: unsafe { device.get_device_queue(gpu.family, 0) },
-            cmd: cmd.map_err(failed("vkAllocateCommandBuffers"))?[0],
-            pool,
-            fence,
-        })
-    }
-
-    /// Waits for the frame that had these commands, and begins anew.
-    fn begin(&self) -> Result<(), String> {
-        let device = &self.gpu.device;
-        let once = vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT;
-        let begin = vk::CommandBufferBeginInfo::default().flags(once);
-        let none = vk::CommandPoolResetFlags::empty();
-        // SAFETY: they are ours, and not in use when the fence is signalled.
-        unsafe {
-            device
-                .wait_for_fences(&[*self.fence], true, u64::MAX)
-                .map_err(failed("vkWaitForFences"))?;
-            device
-                .reset_command_pool(*self.pool, none)
-                .map_err(failed("vkResetCommandPool"))?;
-            device
-                .begin_command_buffer(self.cmd, &begin)
-                .map_err(failed("vkBeginCommandBuffer"))
-        }
-    }
-
-    fn submit(&self) -> Result<(), String> {
-        let device = &self.gpu.device;
-        let commands = [self.cmd];
-        let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
-        // SAFETY: recording, outside of rendering; nobody else uses the queue. The fence is reset only when something will signal it.
-        unsafe {
-            device
-                .end_command_buffer(self.cmd)
-                .map_err(failed("vkEndCommandBuffer"))?;
-            device
-                .reset_fences(&[*self.fence])
-                .map_err(failed("vkResetFences"))?;
-            device
-                .queue_submit(self.queue, &submit, *self.fence)
-                .map_err(failed("vkQueueSubmit"))
-        }
-    }
 }

@@ -6,7 +6,8 @@ use std::ops::Range;
 use ash::vk;
 use hullform::gpu::{
     Attachments, CachePipelines, Cut, DepthBias, DrawList, Drawing, Fill, Fragment, FrameSlot,
-    Layout, PipelineOptions, Pipelines, Pose, Residence, Shading, SurfaceOptions, Tables, Target,
+    Layout, OwnLayout, PipelineOptions, Pipelines, Pose, Residence, Shading, SurfaceOptions,
+    Tables, Target,
 };
 use hullform::mesh::Model as Mesh;
 use hullform::method::{MethodOptions, method};
@@ -281,7 +282,10 @@ fn pipelines<'g>(
     let own = matches!(pass, Pass::Picture).then(|| Fragment {
         module: *materials.fragment,
         constants: None,
-        layout: *materials.layout,
+    });
+    let layout_of = own.map(|_| OwnLayout {
+        raw: *materials.layout,
+        first_set: 0,
     });
     let options = PipelineOptions {
         target,
@@ -290,6 +294,7 @@ fn pipelines<'g>(
         spacing: Spacing::FractionalEven,
         fill,
         fragment: own,
+        layout: layout_of,
     };
     let (device, cache) = (&gpu.device, vk::PipelineCache::null());
     // SAFETY: all of one live device.

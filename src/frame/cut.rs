@@ -39,6 +39,19 @@ impl Cut {
         level.map_or(0, |level| pass.products(patch, level))
     }
 
+    /// The bytes of the least ring in which each pass of what was prepared is one batch, where nothing else bounds it: more gains nothing, and with
+    /// less, down to what a single patch needs, there are more batches, each of which waits for the one before.
+    pub fn ring_bytes(&self, prepared: &Prepared) -> u64 {
+        let of_pass = |pass: &Pass| {
+            let patches = 0..pass.patches.len();
+            let points = patches.map(|patch| u64::from(self.points(pass, patch)));
+            points.sum::<u64>()
+        };
+        let passes = prepared.passes.iter();
+        let ringed = passes.filter(|pass| !pass.scratch_points.is_empty());
+        16 * ringed.map(of_pass).max().unwrap_or(0)
+    }
+
     /// As the control shader has it: beside an n-gon the level may be more than what a plan of one level serves.
     fn plan_level(&self, pass: &Pass, patch: usize) -> Option<u32> {
         let level = |levels| required_level(&levels, abi::HIGHEST_LEVEL);

@@ -2,15 +2,14 @@
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocator;
 
 use crate::error::{Error, Misuse, Result};
-use crate::gpu::{Buffer, Layout, failed};
+use crate::gpu::{Buffer, Layout, Memory, failed};
 
 /// What makes buffers.
 pub(super) struct Maker<'a> {
     pub device: &'a ash::Device,
-    pub allocator: &'a mut Allocator,
+    pub allocator: &'a mut dyn Memory,
     pub layout: &'a Layout,
 }
 
@@ -181,7 +180,7 @@ impl Bound {
     ///
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
         // SAFETY: this function's contract. The sets go with their pool; a null pool is fine.
         unsafe { device.destroy_descriptor_pool(self.pool, None) };
         for buffer in self.buffers {

@@ -1,9 +1,9 @@
 //! A buffer with memory of its own.
 
 use crate::error::{Error, Misuse, Result};
-use crate::gpu::failed;
+use crate::gpu::{Memory, MemoryBlock, MemoryRequest, failed};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
+use gpu_allocator::vulkan::{Allocation, Allocator};
 use gpu_allocator::{AllocationError, MemoryLocation};
 
 /// A Vulkan buffer and the memory bound to it.
@@ -14,7 +14,7 @@ use gpu_allocator::{AllocationError, MemoryLocation};
 pub struct Buffer {
     raw: vk::Buffer,
     size: u64,
-    allocation: Allocation,
+    block: MemoryBlock,
 }
 
 impl Buffer {
@@ -23,10 +23,10 @@ impl Buffer {
     /// A size of 0 is fine here, though not in Vulkan (VUID-VkBufferCreateInfo-size-00912): 4 bytes are allocated then.
     ///
     /// # Safety
-    /// `device` is live, `allocator` was made for it, and `usage` needs no feature that the device was created without.
+    /// `device` is live, `memory` is its own, and `usage` needs no feature that the device was created without.
     pub unsafe fn new(
         device: &ash::Device,
-        allocator: &mut Allocator,
+        memory: &mut dyn Memory,
         name: &str,
         size: u64,
         usage: vk::BufferUsageFlags,
@@ -39,12 +39,8 @@ impl Buffer {
         // SAFETY: the device is live by this function's contract; the info's pointers live through the call.
         let raw = unsafe { device.create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
         // SAFETY: `raw` was just made from `device` and nothing has been bound to it.
-        match unsafe { allocate_and_bind(device, allocator, name, raw, location) } {
-            Ok(allocation) => Ok(Buffer {
-                raw,
-                size,
-                allocation,
-            }),
+        match unsafe { allocate_and_bind(device, memory, name, raw, location) } {
+            Ok(block) => Ok(Buffer { raw, size, block }),
             Err(error) => {
                 // SAFETY: `raw` is ours and no command has seen it.
                 unsafe { device.destroy_buffer(raw, None) };
@@ -63,13 +59,28 @@ impl Buffer {
         self.size
     }
 
-    /// The contents; empty where the host cannot see the buffer, as with [`MemoryLocation::GpuOnly`]. gpu-allocator's mapped memory is coherent: nothing to
-    /// flush.
+    /// The contents; empty where the host cannot see the buffer, as with [`MemoryLocation::GpuOnly`]. Mapped memory is coherent: nothing to flush.
     ///
     /// Meaningful once the GPU's writes are finished and made visible: a barrier to `HOST`/`HOST_READ`, then a fence.
     pub fn bytes(&self) -> &[u8] {
-        let mapped = self.allocation.mapped_slice();
-        mapped.map_or(&[], |mapped| &mapped[..self.size as usize])
+        match self.block.mapped {
+            // SAFETY: so much is mapped as long as the buffer lives, by the contract of `Memory`.
+            Some(mapped) => unsafe {
+                std::slice::from_raw_parts(mapped.as_ptr(), self.size as usize)
+            },
+            None => &[],
+        }
+    }
+
+    /// The same, to be written.
+    fn bytes_mut(&mut self) -> &mut [u8] {
+        match self.block.mapped {
+            // SAFETY: as above, and the buffer is borrowed mutably.
+            Some(mapped) => unsafe {
+                std::slice::from_raw_parts_mut(mapped.as_ptr(), self.size as usize)
+            },
+            None => &mut [],
+        }
     }
 
     /// Copies `bytes` to `offset`. A submission after this call sees them (Vulkan, "Host Write Ordering Guarantees").
@@ -77,8 +88,7 @@ impl Buffer {
     /// # Errors
     /// [`Misuse::Outside`] where the host does not see so much of the buffer.
     pub fn write(&mut self, offset: u64, bytes: &[u8]) -> Result<()> {
-        let mapped = self.allocation.mapped_slice_mut();
-        let seen = mapped.map_or(&mut [][..], |mapped| &mut mapped[..self.size as usize]);
+        let seen = self.bytes_mut();
         let size = seen.len();
         let place = usize::try_from(offset).ok().and_then(|start| {
             let end = start.checked_add(bytes.len())?;
@@ -96,15 +106,15 @@ impl Buffer {
     /// Gives buffer and memory back.
     ///
     /// # Safety
-    /// `device` and `allocator` are those that made the buffer, and no submitted command still uses it.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    /// `device` and `memory` are those that made the buffer, and no submitted command still uses it.
+    pub unsafe fn destroy(self, device: &ash::Device, memory: &mut dyn Memory) {
         // SAFETY: not in use, by this function's contract. The buffer goes before the memory it is bound to.
         unsafe { device.destroy_buffer(self.raw, None) };
-        free(allocator, self.allocation);
+        memory.free(self.block);
     }
 }
 
-/// Gives memory back to the allocator.
+/// Gives memory back to gpu-allocator.
 pub(crate) fn free(allocator: &mut Allocator, allocation: Allocation) {
     allocator
         .free(allocation)
@@ -144,29 +154,25 @@ pub(crate) fn out_of_memory(error: AllocationError) -> Error {
 }
 
 /// # Safety
-/// `raw` is an unbound buffer of the live `device`, and `allocator` was made for that device.
+/// `raw` is an unbound buffer of the live `device`, whose memory is `memory`.
 unsafe fn allocate_and_bind(
     device: &ash::Device,
-    allocator: &mut Allocator,
+    memory: &mut dyn Memory,
     name: &str,
     raw: vk::Buffer,
     location: MemoryLocation,
-) -> Result<Allocation> {
-    let request = AllocationCreateDesc {
+) -> Result<MemoryBlock> {
+    let block = memory.allocate(&MemoryRequest {
         name,
         // SAFETY: `raw` is a buffer of `device`.
         requirements: unsafe { device.get_buffer_memory_requirements(raw) },
         location,
-        linear: true,
-        allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-    };
-    let allocation = allocator.allocate(&request).map_err(out_of_memory)?;
-    // SAFETY: size, alignment and memory type of the range come from the buffer's own requirements; `raw` is unbound.
-    let bound = unsafe { device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
-    match bound {
-        Ok(()) => Ok(allocation),
+    })?;
+    // SAFETY: size, alignment and memory type of the block are the buffer's own requirements, by the contract of `Memory`; `raw` is unbound.
+    match unsafe { device.bind_buffer_memory(raw, block.memory, block.offset) } {
+        Ok(()) => Ok(block),
         Err(code) => {
-            free(allocator, allocation);
+            memory.free(block);
             Err(failed("vkBindBufferMemory")(code))
         }
     }

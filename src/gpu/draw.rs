@@ -9,7 +9,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Draw, DrawList};
 use crate::gpu::ring::cmd_ring_barrier;
 use crate::gpu::sets::STAGES;
-use crate::gpu::{FrameSlot, Layout, Pipelines, Pose, Tables};
+use crate::gpu::{FrameSlot, Layout, OwnLayout, Pipelines, Pose, Tables};
 use crate::tessellation::Spacing;
 
 /// What is drawn, in which pose, and with which slot: all that a batch's draws are bound to.
@@ -23,7 +23,7 @@ pub struct Drawing<'a> {
     pub pose: &'a Pose,
     /// What the frame writes.
     pub slot: &'a FrameSlot,
-    /// The engine's own sets, bound from 3 on; for pipelines with a layout of the engine's own.
+    /// The engine's own sets, bound behind ours, from 3 on if these begin with 0; for pipelines with a layout of the engine's own.
     pub sets: &'a [vk::DescriptorSet],
 }
 
@@ -35,7 +35,7 @@ impl Drawing<'_> {
     ///
     /// Fragment shaders are told patch and view in one number (`drawn_patch` and `drawn_view` in `glsl/lib/interface.glsl`).
     ///
-    /// Binds a pipeline and sets 0 to 2, and [`sets`](Self::sets) from 3 on, and pushes constants from offset 0: an engine binds its own again
+    /// Binds a pipeline and sets 0 to 2 (or where the pipelines' [`OwnLayout`] has them), [`sets`](Self::sets) behind these, and pushes constants from offset 0: an engine binds its own again
     /// afterwards.
     ///
     /// # Errors
@@ -66,7 +66,7 @@ impl Drawing<'_> {
         }
         let instances = views.len() as u32 / pipelines.eyes();
         let constants = Constants {
-            layout: pipelines.layout().unwrap_or(layout.pipeline()),
+            layout: pipelines.layout_or(layout),
             eyes: pipelines.eyes(),
         };
         // SAFETY: this function's contract.
@@ -119,7 +119,7 @@ impl Drawing<'_> {
         &self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
-        layout: vk::PipelineLayout,
+        layout: OwnLayout,
         pipeline: vk::Pipeline,
         batch: Batch<'_>,
     ) {
@@ -133,7 +133,8 @@ impl Drawing<'_> {
                 cmd_ring_barrier(device, cmd);
             }
             device.cmd_bind_pipeline(cmd, graphics, pipeline);
-            device.cmd_bind_descriptor_sets(cmd, graphics, layout, 0, &sets, &[]);
+            let first = layout.first_set;
+            device.cmd_bind_descriptor_sets(cmd, graphics, layout.raw, first, &sets, &[]);
             if let Some(indices) = slot.patterns().buffer() {
                 device.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT16);
             }
@@ -219,7 +220,7 @@ impl Drawing<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Constants {
     /// The pipelines' layout.
-    pub layout: vk::PipelineLayout,
+    pub layout: OwnLayout,
     /// Views an instance.
     pub eyes: u32,
 }
@@ -230,6 +231,6 @@ impl Constants {
     pub unsafe fn cmd_push(self, device: &ash::Device, cmd: vk::CommandBuffer, frame: &abi::Frame) {
         let constants = bytemuck::bytes_of(frame);
         // SAFETY: this function's contract.
-        unsafe { device.cmd_push_constants(cmd, self.layout, STAGES, 0, constants) };
+        unsafe { device.cmd_push_constants(cmd, self.layout.raw, STAGES, 0, constants) };
     }
 }

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
@@ -17,7 +16,7 @@ use crate::gpu::pipeline::control_points;
 use crate::gpu::ring::{RING_ACCESS, stages};
 use crate::gpu::view::View;
 use crate::gpu::workaround::{Workaround, instance_vertices};
-use crate::gpu::{Buffer, Enabled, Layout, Tables};
+use crate::gpu::{Buffer, Enabled, Layout, Memory, Tables};
 use crate::method::{DepthTags, Pass, Prepared};
 
 /// What stands in place of counts that no device has written: more overflows than there are patches.
@@ -78,7 +77,7 @@ impl FrameSlot {
     /// `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         layout: &Layout,
         tables: &Tables,
         workarounds: &[&'static Workaround],
@@ -218,7 +217,7 @@ impl FrameSlot {
     pub unsafe fn write_draws(
         &mut self,
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         tables: &Tables,
         list: &DrawList,
     ) -> Result<()> {
@@ -443,7 +442,7 @@ impl FrameSlot {
     ///
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
         // SAFETY: this function's contract.
         unsafe {
             self.patterns.destroy(device, allocator);

@@ -163,7 +163,7 @@ impl Drawing<'_> {
         }
         let eyes = pipelines.eyes();
         let constants = Constants {
-            layout: pipelines.layout().unwrap_or(layout.pipeline()),
+            layout: pipelines.layout_or(layout),
             eyes,
         };
         let repeated = views.len() as u32 / eyes;

@@ -14,6 +14,7 @@ pub mod features;
 mod frame_slot;
 mod indirect;
 mod layout;
+pub mod memory;
 mod patterns;
 mod pipeline;
 mod points;
@@ -39,11 +40,14 @@ pub use features::{Enabled, ExtraFeatures, FeatureChain, OptionalFeatures, Suppo
 pub use frame_slot::{Counters, FrameSlot};
 pub use indirect::{Indirect, IndirectCommands};
 pub use layout::Layout;
+pub use memory::{Memory, MemoryBlock, MemoryRequest};
 pub use pipeline::Pipelines;
 pub use points::PointPipeline;
 pub use pose::Pose;
 pub use surface::TessellatedSurface;
 pub use tables::Tables;
-pub use target::{Attachments, DepthBias, Fill, Fragment, PipelineOptions, Shading, Target};
+pub use target::{
+    Attachments, DepthBias, Fill, Fragment, OwnLayout, PipelineOptions, Shading, Target,
+};
 pub use view::View;
 pub use workaround::{Remedy, Workaround, workarounds};

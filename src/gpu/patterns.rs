@@ -4,13 +4,12 @@ use std::ops::Range;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocator;
 use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::Result;
 use crate::frame::{Key, key};
-use crate::gpu::Buffer;
+use crate::gpu::{Buffer, Memory};
 use crate::tessellation::{Levels, pattern};
 
 /// The patterns of a surface.
@@ -31,7 +30,7 @@ impl Patterns {
     pub unsafe fn write(
         &mut self,
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         patterns: &[Levels],
     ) -> Result<()> {
         self.places = patterns.iter().map(|levels| self.provide(levels)).collect();
@@ -85,7 +84,7 @@ impl Patterns {
     ///
     /// # Safety
     /// As [`Patterns::write`].
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
         if let Some(buffer) = self.buffer {
             // SAFETY: this function's contract.
             unsafe { buffer.destroy(device, allocator) };

@@ -1,10 +1,12 @@
 //! Pipelines: one a pass, from the method's modules.
 
+use std::borrow::Cow;
+
 use ash::vk;
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::target::{Attachments, Fill, PipelineOptions};
+use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed, shaders};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::Spacing;
@@ -14,7 +16,7 @@ use crate::tessellation::Spacing;
 pub struct Pipelines {
     pipelines: Vec<vk::Pipeline>,
     /// Their layout, where it is the engine's.
-    layout: Option<vk::PipelineLayout>,
+    layout: Option<OwnLayout>,
     /// What they draw, where it is known.
     made_for: Option<MadeFor>,
 }
@@ -49,11 +51,10 @@ impl Pipelines {
         options: &PipelineOptions<'_>,
     ) -> Result<Pipelines> {
         options.check(&layout.enabled())?;
-        let own = options.fragment.map(|fragment| fragment.layout);
         let attachments = options.target.attachments;
         let mut pipelines = Pipelines {
             pipelines: Vec::new(),
-            layout: own,
+            layout: options.layout,
             made_for: Some(MadeFor {
                 shaders: prepared.passes.iter().map(|pass| pass.shader).collect(),
                 backend: options.backend,
@@ -67,7 +68,7 @@ impl Pipelines {
             let plan = PipelinePlan {
                 options,
                 control_points: control_points(pass, options.residence),
-                layout: own.unwrap_or(layout.pipeline()),
+                layout: pipelines.layout_or(layout),
             };
             let modules = modules(pass, options);
             // SAFETY: this function's contract.
@@ -86,17 +87,14 @@ impl Pipelines {
 
     /// Pipelines of the engine's own, one a pass of [`Prepared`] in order: other shaders, other targets, other states.
     ///
-    /// They are drawn like any others; sets 0 to 2 are bound with `layout`, which is theirs, or with [`Layout::pipeline`] for None. [`destroy`](Self::destroy) destroys them; an engine that keeps its handles drops this instead.
+    /// They are drawn like any others; our sets are bound with `layout`, which is theirs, or with [`Layout::pipeline`] for None. [`destroy`](Self::destroy) destroys them; an engine that keeps its handles drops this instead.
     ///
     /// # Safety
     /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
     /// surface's backend draws. Its layout is `layout`, or one that is
     /// compatible with [`Layout::pipeline`] for sets 0 to 2, and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
     /// `abi::Frame` and these sets as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
-    pub unsafe fn from_raw(
-        pipelines: Vec<vk::Pipeline>,
-        layout: Option<vk::PipelineLayout>,
-    ) -> Pipelines {
+    pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>, layout: Option<OwnLayout>) -> Pipelines {
         Pipelines {
             pipelines,
             layout,
@@ -132,8 +130,16 @@ impl Pipelines {
     }
 
     /// Their layout, where it is the engine's.
-    pub(super) fn layout(&self) -> Option<vk::PipelineLayout> {
+    pub(super) fn layout(&self) -> Option<OwnLayout> {
         self.layout
+    }
+
+    /// Their layout.
+    pub(super) fn layout_or(&self, ours: &Layout) -> OwnLayout {
+        self.layout.unwrap_or(OwnLayout {
+            raw: ours.pipeline(),
+            first_set: 0,
+        })
     }
 
     /// How many views an instance has: one, but with multiview.
@@ -225,11 +231,32 @@ fn modules(pass: &Pass, options: &PipelineOptions<'_>) -> Result<Vec<Module>> {
     found.collect()
 }
 
+/// A module whose descriptor sets have numbers from `first` on.
+fn moved(words: &'static [u32], first: u32) -> Cow<'static, [u32]> {
+    if first == 0 {
+        return Cow::Borrowed(words);
+    }
+    // SPIR-V, "Physical Layout" and OpDecorate: the first word has length and opcode, then come the target, the decoration, and its number.
+    const HEADER: usize = 5;
+    const DECORATE: u32 = 71;
+    const DESCRIPTOR_SET: u32 = 34;
+    let mut moved = words.to_vec();
+    let mut at = HEADER;
+    while at < moved.len() {
+        let (length, opcode) = (moved[at] >> 16, moved[at] & 0xffff);
+        if opcode == DECORATE && moved[at + 2] == DESCRIPTOR_SET {
+            moved[at + 3] += first;
+        }
+        at += length.max(1) as usize;
+    }
+    Cow::Owned(moved)
+}
+
 /// What a pipeline is made of, its shaders aside.
 struct PipelinePlan<'a> {
     options: &'a PipelineOptions<'a>,
     control_points: u32,
-    layout: vk::PipelineLayout,
+    layout: OwnLayout,
 }
 
 impl PipelinePlan<'_> {
@@ -244,7 +271,8 @@ impl PipelinePlan<'_> {
         let mut made = Vec::new();
         let mut problem = None;
         for &(stage, words) in modules {
-            let info = vk::ShaderModuleCreateInfo::default().code(words);
+            let words = moved(words, self.layout.first_set);
+            let info = vk::ShaderModuleCreateInfo::default().code(&words);
             // SAFETY: the words are a valid module; the tests validate every one.
             match unsafe { device.create_shader_module(&info, None) } {
                 Ok(module) => made.push((stage, module)),
@@ -309,7 +337,7 @@ impl PipelinePlan<'_> {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(self.layout);
+            .layout(self.layout.raw);
         if self.options.backend == Backend::Tessellator {
             info = info.tessellation_state(&tessellation);
         }

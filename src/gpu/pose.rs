@@ -2,7 +2,6 @@
 
 use ash::vk;
 use glam::Vec3;
-use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
@@ -10,7 +9,7 @@ use crate::frame::{Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::cache::Cache;
 use crate::gpu::staging::{Staging, cmd_copy};
-use crate::gpu::{Layout, Tables};
+use crate::gpu::{Layout, Memory, Tables};
 use crate::method::{Controls, Prepared};
 
 /// Control vertices and the points that are computed from them, on the device. It borrows nothing; the owner calls [`Pose::destroy`].
@@ -39,7 +38,7 @@ impl Pose {
     /// `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         layout: &Layout,
         tables: &Tables,
         positions: &[Vec3],
@@ -175,7 +174,7 @@ impl Pose {
     ///
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
         if let Some(staging) = self.staging.into_buffer() {
             // SAFETY: this function's contract.
             unsafe { staging.destroy(device, allocator) };

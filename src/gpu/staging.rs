@@ -2,12 +2,11 @@
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocator;
 
 use crate::error::Result;
-use crate::gpu::Buffer;
 use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::bound::Bound;
+use crate::gpu::{Buffer, Memory};
 
 /// What is to be copied into numbered buffers, together.
 #[derive(Debug, Default)]
@@ -33,7 +32,7 @@ impl Staging {
     ///
     /// # Safety
     /// `device` is live and `allocator` its own.
-    pub unsafe fn fill(&mut self, device: &ash::Device, allocator: &mut Allocator) -> Result<()> {
+    pub unsafe fn fill(&mut self, device: &ash::Device, allocator: &mut dyn Memory) -> Result<()> {
         let bytes = std::mem::take(&mut self.bytes);
         let (size, usage) = (bytes.len() as u64, vk::BufferUsageFlags::TRANSFER_SRC);
         let location = MemoryLocation::CpuToGpu;

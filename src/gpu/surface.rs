@@ -3,15 +3,14 @@
 use std::ops::Range;
 
 use ash::vk;
-use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, DrawList, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
-    Arrival, CachePipelines, Counters, Drawing, FrameSlot, Layout, Pipelines, PointPipeline, Pose,
-    Tables, View,
+    Arrival, CachePipelines, Counters, Drawing, FrameSlot, Layout, Memory, Pipelines,
+    PointPipeline, Pose, Tables, View,
 };
 use crate::mesh::Model;
 use crate::method::{DepthTags, Prepared};
@@ -40,7 +39,7 @@ impl TessellatedSurface {
     /// `device` is live; `allocator` and `layout` were made for it. All commands of this surface go to queues of one family: the buffers are `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         layout: &Layout,
         model: &Model,
         prepared: Prepared,
@@ -129,7 +128,7 @@ impl TessellatedSurface {
     ///
     /// # Safety
     /// `device` and `allocator` made this surface, and the upload has been executed.
-    pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut dyn Memory) {
         // SAFETY: this function's contract.
         unsafe { self.tables.finish_upload(device, allocator) };
     }
@@ -208,7 +207,7 @@ impl TessellatedSurface {
     pub unsafe fn write_draws(
         &mut self,
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         list: &DrawList,
     ) -> Result<()> {
         // SAFETY: this function's contract.
@@ -290,7 +289,7 @@ impl TessellatedSurface {
     ///
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
         // SAFETY: this function's contract.
         unsafe {
             self.slot.destroy(device, allocator);

@@ -2,14 +2,13 @@
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocator;
 
 use crate::abi;
 use crate::error::Result;
 use crate::frame::{Residence, SurfaceOptions};
-use crate::gpu::Layout;
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::staging::{Staging, cmd_copy};
+use crate::gpu::{Layout, Memory};
 use crate::method::{CachedPoints, Prepared};
 
 /// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
@@ -39,7 +38,7 @@ impl Tables {
     /// `device` is live; `allocator` and `layout` were made for it. All commands go to queues of one family: the buffers are `EXCLUSIVE`.
     pub unsafe fn new(
         device: &ash::Device,
-        allocator: &mut Allocator,
+        allocator: &mut dyn Memory,
         layout: &Layout,
         prepared: Prepared,
         options: &SurfaceOptions,
@@ -150,7 +149,7 @@ impl Tables {
     ///
     /// # Safety
     /// `device` and `allocator` made these tables, and the upload has been executed.
-    pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut dyn Memory) {
         if let Some(staging) = std::mem::take(&mut self.staging).into_buffer() {
             // SAFETY: this function's contract.
             unsafe { staging.destroy(device, allocator) };
@@ -181,7 +180,7 @@ impl Tables {
     ///
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
         if let Some(staging) = self.staging.into_buffer() {
             // SAFETY: this function's contract.
             unsafe { staging.destroy(device, allocator) };

@@ -164,9 +164,17 @@ pub struct Fragment<'a> {
     pub module: vk::ShaderModule,
     /// Its constants.
     pub constants: Option<&'a vk::SpecializationInfo<'a>>,
-    /// The layout of the pipelines: sets 0 to 2 and the push constants are [`Layout`](super::Layout)'s, the sets from 3 on the engine's. It lives as
-    /// long as the pipelines.
-    pub layout: vk::PipelineLayout,
+}
+
+/// A pipeline layout of the engine's own: three sets in a row and the push constants are [`Layout`](super::Layout)'s, all others the engine's. It lives
+/// as long as the pipelines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OwnLayout {
+    /// The layout.
+    pub raw: vk::PipelineLayout,
+    /// The number of the first of the three: 0 where the engine's begin with 3, 1 where it keeps set 0 for what is the same in all its draws. The
+    /// engine's own shaders are compiled with the macro `HULLFORM_SET` for it; ours are moved when pipelines are made.
+    pub first_set: u32,
 }
 
 /// What pipelines are made for.
@@ -184,6 +192,8 @@ pub struct PipelineOptions<'a> {
     pub fill: Fill,
     /// The engine's own fragment shader; None for ours.
     pub fragment: Option<Fragment<'a>>,
+    /// The engine's own layout, where it has further sets; None for [`Layout::pipeline`](super::Layout::pipeline).
+    pub layout: Option<OwnLayout>,
 }
 
 impl PipelineOptions<'_> {

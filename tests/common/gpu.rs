@@ -158,6 +158,7 @@ impl Gpu {
             spacing,
             fill,
             fragment: None,
+            layout: None,
         };
         let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
         // SAFETY: all of one live device.

@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use ash::vk;
-use hullform::gpu::shaders::spirv;
 use hullform::gpu::{
-    Attachments, Backend, Batch, DepthBias, DrawList, Drawing, Fill, Fragment, Layout,
-    PipelineOptions, Pipelines, Residence, Shading, Support, SurfaceOptions, Target, View,
+    Attachments, Backend, Batch, DepthBias, DrawList, Drawing, Fill, Layout, PipelineOptions,
+    Pipelines, Residence, Shading, Support, SurfaceOptions, Target, View,
 };
 use hullform::method::METHODS;
 use hullform::tessellation::Spacing;
@@ -100,6 +99,7 @@ impl<'a> Scene<'a> {
             spacing: self.list.cut().spacing,
             fill,
             fragment: None,
+            layout: None,
         }
     }
 
@@ -273,95 +273,6 @@ fn depths_alone_are_those_of_the_picture_and_can_be_moved() {
     gpu.finish();
 }
 
-/// A module of the engine's, here ours with constants of its own, and a layout with a set more, which `Drawing` binds.
-#[test]
-fn an_engine_brings_its_own_fragment_shader_and_sets() {
-    let Some(gpu) = open() else { return };
-    let canvas = Canvas::new(&gpu, ONE, 1);
-    let scene = Scene::new(&gpu, Backend::Tessellator);
-    let right = scene.classic(Shading::Normal);
-    let device = gpu.device.raw();
-    let last = METHODS.last().expect("there are methods").name;
-    let words = spirv(&format!("{last}.frag")).expect("it ships");
-    let binding = [vk::DescriptorSetLayoutBinding::default()
-        .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER)
-        .descriptor_count(1)
-        .stage_flags(vk::ShaderStageFlags::FRAGMENT)];
-    let sizes = [vk::DescriptorPoolSize::default()
-        .ty(vk::DescriptorType::UNIFORM_BUFFER)
-        .descriptor_count(1)];
-    // SAFETY: all of one live device, here and below.
-    let (module, set_layout, pool, own, layout) = unsafe {
-        let info = vk::ShaderModuleCreateInfo::default().code(words);
-        let module = device.create_shader_module(&info, None).expect("a module");
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&binding);
-        let set_layout = device.create_descriptor_set_layout(&info, None);
-        let set_layout = [set_layout.expect("it is small")];
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(1)
-            .pool_sizes(&sizes);
-        let pool = device.create_descriptor_pool(&info, None).expect("small");
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(pool)
-            .set_layouts(&set_layout);
-        let own = device.allocate_descriptor_sets(&info).expect("one");
-        let sets = [&gpu.layout().sets()[..], &set_layout].concat();
-        let ranges = [Layout::push_constant_range()];
-        let info = vk::PipelineLayoutCreateInfo::default()
-            .set_layouts(&sets)
-            .push_constant_ranges(&ranges);
-        let layout = device.create_pipeline_layout(&info, None).expect("small");
-        (module, set_layout[0], pool, own, layout)
-    };
-    let shading = hullform::abi::SHADING_NORMAL.to_ne_bytes();
-    let entries = [vk::SpecializationMapEntry::default().size(4)];
-    let constants = vk::SpecializationInfo::default()
-        .map_entries(&entries)
-        .data(&shading);
-    let options = PipelineOptions {
-        fragment: Some(Fragment {
-            module,
-            constants: Some(&constants),
-            layout,
-        }),
-        ..scene.options(Target::new(COLOURED), Fill::Solid(Shading::Lit))
-    };
-    let pipelines = scene.build(gpu.layout(), &options).expect("it can");
-    let ours = scene.options(Target::new(COLOURED), Fill::Solid(Shading::Lit));
-    let ours = scene.build(gpu.layout(), &ours).expect("it can");
-    let drawing = Drawing {
-        sets: &own,
-        ..scene.drawing()
-    };
-    // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-    let drawn = gpu.device.submit(|cmd| unsafe {
-        let surface = scene.loaded.surface();
-        surface.cmd_prepare(device, cmd, &scene.views)?;
-        canvas.begin(cmd, &[Part::Colour, Part::Depth], 1.0, 0, NONE);
-        for batch in scene.batches() {
-            let refused = drawing.cmd_draw(device, cmd, gpu.layout(), &ours, 0..9, batch);
-            assert!(matches!(refused, Err(Error::Misuse(Misuse::OwnSets))));
-            drawing.cmd_draw(device, cmd, gpu.layout(), &pipelines, 0..9, batch)?;
-        }
-        canvas.end(cmd, Part::Colour);
-        Ok(())
-    });
-    drawn.expect("it is executed");
-    assert!(canvas.pixels() == right);
-    // SAFETY: every submission has been waited for.
-    unsafe {
-        pipelines.destroy(device);
-        ours.destroy(device);
-        device.destroy_shader_module(module, None);
-        device.destroy_pipeline_layout(layout, None);
-        device.destroy_descriptor_pool(pool, None);
-        device.destroy_descriptor_set_layout(set_layout, None);
-    }
-    drop(scene);
-    drop(canvas);
-    gpu.finish();
-}
-
 /// A layout for a device that shows no multi-draw: each command is then a call.
 pub fn single_draws(gpu: &Gpu) -> Layout {
     let support: &Support = &gpu.device.info().support;
@@ -463,6 +374,7 @@ fn dynamic_rendering_takes_no_barriers_and_needs_its_feature() {
         spacing: Spacing::Equal,
         fill: Fill::Solid(Shading::Lit),
         fragment: None,
+        layout: None,
     };
     let (device, cache) = (gpu.device.raw(), vk::PipelineCache::null());
     let prepared = loaded.prepared();

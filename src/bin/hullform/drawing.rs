@@ -231,6 +231,7 @@ impl<'a> Drawing<'a> {
             spacing,
             fill,
             fragment: None,
+            layout: None,
         };
         // SAFETY: all of one live device.
         let pipelines = unsafe {

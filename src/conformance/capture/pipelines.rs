@@ -58,6 +58,7 @@ impl Bench {
             spacing,
             fill,
             fragment: None,
+            layout: None,
         };
         let (device, layout) = (self.device.raw(), self.layout());
         // SAFETY: all of one live device.

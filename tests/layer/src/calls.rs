@@ -150,6 +150,8 @@ passed_on! {
         device: vk::Device, info: *const vk::CommandBufferAllocateInfo<'_>, buffers: *mut vk::CommandBuffer) nothing;
     vkBeginCommandBuffer: PFN_vkBeginCommandBuffer(cmd: vk::CommandBuffer, info: *const vk::CommandBufferBeginInfo<'_>) nothing;
     vkEndCommandBuffer: PFN_vkEndCommandBuffer(cmd: vk::CommandBuffer) nothing;
+    vkResetCommandPool: PFN_vkResetCommandPool(device: vk::Device, pool: vk::CommandPool, flags: vk::CommandPoolResetFlags) nothing;
+    vkResetFences: PFN_vkResetFences(device: vk::Device, count: u32, fences: *const vk::Fence) nothing;
     vkGetPipelineCacheData: PFN_vkGetPipelineCacheData(
         device: vk::Device, cache: vk::PipelineCache, size: *mut usize, data: *mut c_void) nothing;
     vkGetQueryPoolResults: PFN_vkGetQueryPoolResults(

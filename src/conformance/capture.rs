@@ -380,7 +380,7 @@ impl Loaded<'_> {
         )?;
         match self.surface().counters()?.overflows {
             0 => {
-                let alphas = target.read_pixels().into_iter().skip(3).step_by(4);
+                let alphas = target.read_pixels().iter().copied().skip(3).step_by(4);
                 let alphas: Vec<u8> = alphas.collect();
                 self.bench
                     .saw(alphas.iter().filter(|&&alpha| alpha != 0).count());

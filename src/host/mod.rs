@@ -14,7 +14,7 @@ pub use choice::{DeviceInfo, devices};
 pub use coloured::{ColouredTriangles, ColouredVertex};
 pub use device::Device;
 pub use instance::Instance;
-pub use offscreen::{Encoding, OffscreenTarget};
+pub use offscreen::{Area, Encoding, OffscreenTarget};
 pub use statistics::StatisticsQuery;
 pub(crate) use storage_set::StorageSet;
 pub use timestamps::TimestampQuery;

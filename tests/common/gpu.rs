@@ -407,7 +407,7 @@ impl Loaded<'_> {
 
     /// The picture of the last draw, four bytes a pixel.
     pub fn pixels(&self) -> Vec<u8> {
-        self.gpu.target().read_pixels()
+        self.gpu.target().read_pixels().to_vec()
     }
 
     /// The captured vertices in order, each once: an evaluation shader may run more than once a vertex, with the same result.

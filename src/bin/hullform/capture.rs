@@ -17,7 +17,7 @@ use hullform::{Error, Result, abi};
 const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
 
 /// The picture in which depth tags see the surface: `render`'s own.
-const SEEN: [f32; 2] = [1280.0, 720.0];
+const SEEN: [u32; 2] = [1280, 720];
 
 /// Tessellates `model` on the device, some patches at a time, and gathers what the evaluating shader produced. Depth tags, if any, go by what
 /// `camera` sees.
@@ -58,7 +58,7 @@ pub fn capture(
         };
         subject.framed(camera, SEEN)
     });
-    let tags = seen.transpose()?.and_then(|(_, tags)| tags);
+    let tags = seen.transpose()?.and_then(|framed| framed.tags);
     let mut drawing = Drawing::of(gpu, model, prepared, options)?;
     drawing.upload(global.points)?;
     // Nothing is rasterised, but draws need a render pass.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use hullform::gpu::{Cut, Fill, Pipelines, Slots, SurfaceOptions, View};
-use hullform::host::OffscreenTarget;
+use hullform::host::{Area, OffscreenTarget};
 use hullform::mesh::Model;
 use hullform::method::{DepthTags, Displacement, Prepared};
 use hullform::{Result, abi};
@@ -45,16 +45,22 @@ pub struct Subject<'a> {
     pub points: Points,
 }
 
+/// What is seen of it.
+pub struct Framed {
+    /// From where.
+    pub view: camera::View,
+    /// The depth tags that the cutting asks for there.
+    pub tags: Option<DepthTags>,
+    /// The part of the picture in which it is; the rest is empty.
+    pub area: Area,
+}
+
 impl Subject<'_> {
-    /// What `camera` sees in a picture of `size` pixels, and the depth tags that the cutting asks for there.
+    /// What `camera` sees in a picture of `size` pixels.
     ///
     /// The vertices come from the device, undrawn, by the very shaders that will draw them: so displacement, spacing and back-end are what
     /// they will be.
-    pub fn framed(
-        &self,
-        camera: Camera,
-        size: [f32; 2],
-    ) -> Result<(camera::View, Option<DepthTags>)> {
+    pub fn framed(&self, camera: Camera, size: [u32; 2]) -> Result<Framed> {
         let Cutting {
             cut,
             backend,
@@ -85,8 +91,9 @@ impl Subject<'_> {
         target: &OffscreenTarget,
         pipelines: &Pipelines,
         camera: Camera,
-        size: [f32; 2],
-    ) -> Result<(camera::View, Option<DepthTags>)> {
+        [width, height]: [u32; 2],
+    ) -> Result<Framed> {
+        let size = [width, height].map(|side| side as f32);
         let mut frame = |cut: Cut, tags: Option<&DepthTags>| {
             let mut positions = Vec::new();
             for batch in drawing.draw_list(cut, tags)?.batches() {
@@ -96,15 +103,24 @@ impl Subject<'_> {
             }
             let view = camera.frame(&positions, size[0] / size[1]);
             let tags = drawing.tags(self.model, self.cutting, &view, size)?;
-            Ok((view, tags))
+            let area = view.area(&positions, [width, height]);
+            Ok(Framed { view, tags, area })
         };
-        let (view, tags) = frame(self.coarse(), None)?;
-        if tags.is_none() || self.displacement.height == 0.0 {
-            return Ok((view, tags));
+        let mut framed = frame(self.coarse(), None)?;
+        if self.displacement.height != 0.0 {
+            if framed.tags.is_some() {
+                // With fewer vertices fewer bumps are met.
+                framed.view = frame(self.cutting.cut, framed.tags.as_ref())?.view;
+            }
+            // A bump that was not met may be anywhere.
+            framed.area = Area {
+                x: 0,
+                y: 0,
+                width,
+                height,
+            };
         }
-        // With fewer vertices fewer bumps are met.
-        let (view, _) = frame(self.cutting.cut, tags.as_ref())?;
-        Ok((view, tags))
+        Ok(framed)
     }
 
     fn view(&self) -> View {

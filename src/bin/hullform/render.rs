@@ -2,16 +2,16 @@
 
 use crate::camera::{Camera, View};
 use crate::drawing::{Drawing, OwnPipelines};
-use crate::framing::Subject;
+use crate::framing::{Framed, Subject};
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
-use hullform::host::{OffscreenTarget, StatisticsQuery};
+use hullform::host::{Area, OffscreenTarget, StatisticsQuery};
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Displacement, Prepared};
+use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -85,15 +85,12 @@ struct Scene<'a> {
     load_seconds: f64,
 }
 
-/// What is seen of a scene, and the depth tags that follow from that.
-type Seen = (View, Option<DepthTags>);
-
 /// Where a scene is seen from.
 enum Sight {
     /// From where the camera sees all of the surface, in a picture of this size.
     Framed(Camera, Size),
-    /// From a given place; depth tags are not asked for.
-    Given(View),
+    /// From a given place, in this part of the picture; depth tags are not asked for.
+    Given(View, Area),
 }
 
 /// Draws the model and writes picture and statistics.
@@ -139,7 +136,7 @@ fn draw_picture(
             remedy: "choose another device or leave it out".into(),
         });
     }
-    let (target, factor) = target(gpu, width, height)?;
+    let (mut target, factor) = target(gpu, width, height)?;
     let scene = Scene {
         model,
         chosen: arguments.cut.chosen(model)?,
@@ -153,11 +150,10 @@ fn draw_picture(
         points: global.points,
         load_seconds,
     };
-    let stats = progress::during("drawing", |_| draw(gpu, &target, &scene))?;
-    Ok((
-        picture::compose(&target.read_pixels(), width, height, factor),
-        stats,
-    ))
+    let stats = progress::during("drawing", |_| draw(gpu, &mut target, factor, &scene))?;
+    let pixels = target.read_pixels();
+    let picture = picture::compose(pixels, target.area(), width, height, factor);
+    Ok((picture, stats))
 }
 
 /// A target for a picture, and the factor by which it is larger.
@@ -175,21 +171,22 @@ pub fn target(gpu: &Gpu, width: u32, height: u32) -> Result<(OffscreenTarget, u3
     Ok((target, factor))
 }
 
-/// Draws a model lit, by a method, as seen in `view`.
+/// Draws a model lit, by a method, as seen in `view`: in an area of the picture, whose pixels are drawn as squares of `factor`.
+#[allow(clippy::too_many_arguments)]
 pub fn draw_lit(
     gpu: &Gpu,
-    target: &OffscreenTarget,
+    (target, factor): (&mut OffscreenTarget, u32),
     model: &Model,
     chosen: Chosen,
     cutting: Cutting,
-    view: View,
+    (view, area): (View, Area),
     global: &Global,
 ) -> Result<()> {
     let scene = Scene {
         model,
         chosen,
         cutting,
-        sight: Sight::Given(view),
+        sight: Sight::Given(view, area),
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
@@ -198,7 +195,7 @@ pub fn draw_lit(
         points: global.points,
         load_seconds: 0.0,
     };
-    draw(gpu, target, &scene).map(drop)
+    draw(gpu, target, factor, &scene).map(drop)
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
@@ -210,11 +207,25 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
 }
 
 /// Draws `scene` into `target`, copies the picture to the host, and returns the statistics.
-fn draw(gpu: &Gpu, target: &OffscreenTarget, scene: &Scene<'_>) -> Result<Value> {
+fn draw(gpu: &Gpu, target: &mut OffscreenTarget, factor: u32, scene: &Scene<'_>) -> Result<Value> {
     let started = Instant::now();
     let prepared = Drawing::prepare(scene.model, scene.chosen)?;
     let plan_seconds = started.elapsed().as_secs_f64();
     let seen = scene.seen(gpu, &prepared)?;
+    let Area {
+        x,
+        y,
+        width,
+        height,
+    } = seen.area;
+    let [x, y, width, height] = [x, y, width, height].map(|side| side * factor);
+    target.confine(Area {
+        x,
+        y,
+        width,
+        height,
+    });
+    let target = &*target;
     let draw =
         |prepared, slots| draw_with(gpu, target, scene, prepared, plan_seconds, &seen, slots);
     let stats = draw(prepared, scene.slots)?;
@@ -228,9 +239,13 @@ fn draw(gpu: &Gpu, target: &OffscreenTarget, scene: &Scene<'_>) -> Result<Value>
 
 impl Scene<'_> {
     /// What is seen of it, and the depth tags that the cutting asks for.
-    fn seen(&self, gpu: &Gpu, prepared: &Prepared) -> Result<Seen> {
+    fn seen(&self, gpu: &Gpu, prepared: &Prepared) -> Result<Framed> {
         match self.sight {
-            Sight::Given(view) => Ok((view, None)),
+            Sight::Given(view, area) => Ok(Framed {
+                view,
+                tags: None,
+                area,
+            }),
             Sight::Framed(camera, Size { width, height }) => {
                 let subject = Subject {
                     gpu,
@@ -241,7 +256,7 @@ impl Scene<'_> {
                     ring_bytes: self.ring_bytes,
                     points: self.points,
                 };
-                subject.framed(camera, [width as f32, height as f32])
+                subject.framed(camera, [width, height])
             }
         }
     }
@@ -253,7 +268,7 @@ fn draw_with(
     scene: &Scene<'_>,
     prepared: Prepared,
     plan_seconds: f64,
-    (view, tags): &Seen,
+    Framed { view, tags, .. }: &Framed,
     slots: Slots,
 ) -> Result<Value> {
     let Cutting {

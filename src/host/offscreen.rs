@@ -135,6 +135,11 @@ impl OffscreenTarget {
         Ok(target)
     }
 
+    /// The device that it is on.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
     /// The render pass; pipelines are made for its subpass 0.
     pub fn render_pass(&self) -> vk::RenderPass {
         self.render_pass

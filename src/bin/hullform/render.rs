@@ -1,7 +1,7 @@
 //! `hullform render`: a picture of a model.
 
 use crate::camera::{Camera, View};
-use crate::drawing::{Drawing, OwnPipelines};
+use crate::drawing::{self, Drawing};
 use crate::framing::{Framed, Subject};
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
@@ -9,7 +9,7 @@ use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
-use hullform::host::{Area, OffscreenTarget, StatisticsQuery};
+use hullform::host::{Area, Bench, OffscreenTarget, Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
@@ -136,7 +136,7 @@ fn draw_picture(
             remedy: "choose another device or leave it out".into(),
         });
     }
-    let (mut target, factor) = target(gpu, width, height)?;
+    let (mut bench, factor) = bench(gpu, width, height)?;
     let scene = Scene {
         model,
         chosen: arguments.cut.chosen(model)?,
@@ -146,18 +146,17 @@ fn draw_picture(
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
+        slots: drawing::slots(global.slots),
         points: global.points,
         load_seconds,
     };
-    let stats = progress::during("drawing", |_| draw(gpu, &mut target, factor, &scene))?;
-    let pixels = target.read_pixels();
-    let picture = picture::compose(pixels, target.area(), width, height, factor);
-    Ok((picture, stats))
+    let stats = progress::during("drawing", |_| draw(gpu, &mut bench, factor, &scene))?;
+    let (pixels, area) = (bench.target().read_pixels(), bench.target().area());
+    Ok((picture::compose(pixels, area, width, height, factor), stats))
 }
 
-/// A target for a picture, and the factor by which it is larger.
-pub fn target(gpu: &Gpu, width: u32, height: u32) -> Result<(OffscreenTarget, u32)> {
+/// A bench for a picture, and the factor by which its target is larger.
+pub fn bench(gpu: &Gpu, width: u32, height: u32) -> Result<(Bench, u32)> {
     let limits = gpu.device.limits();
     let widest = limits
         .max_framebuffer_width
@@ -167,15 +166,22 @@ pub fn target(gpu: &Gpu, width: u32, height: u32) -> Result<(OffscreenTarget, u3
     } else {
         1
     };
-    let target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
-    Ok((target, factor))
+    let mut target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
+    // Until it is known where something is to be seen.
+    target.confine(Area {
+        x: 0,
+        y: 0,
+        width: 1,
+        height: 1,
+    });
+    Ok((Bench::new(target)?, factor))
 }
 
 /// Draws a model lit, by a method, as seen in `view`: in an area of the picture, whose pixels are drawn as squares of `factor`.
 #[allow(clippy::too_many_arguments)]
 pub fn draw_lit(
     gpu: &Gpu,
-    (target, factor): (&mut OffscreenTarget, u32),
+    (bench, factor): (&mut Bench, u32),
     model: &Model,
     chosen: Chosen,
     cutting: Cutting,
@@ -191,11 +197,11 @@ pub fn draw_lit(
         displacement: Displacement::default(),
         wireframe: false,
         ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
+        slots: drawing::slots(global.slots),
         points: global.points,
         load_seconds: 0.0,
     };
-    draw(gpu, target, factor, &scene).map(drop)
+    draw(gpu, bench, factor, &scene).map(drop)
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
@@ -206,40 +212,37 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
     }
 }
 
-/// Draws `scene` into `target`, copies the picture to the host, and returns the statistics.
-fn draw(gpu: &Gpu, target: &mut OffscreenTarget, factor: u32, scene: &Scene<'_>) -> Result<Value> {
+/// Draws `scene` into the target of `bench`, copies the picture to the host, and returns the statistics.
+fn draw(gpu: &Gpu, bench: &mut Bench, factor: u32, scene: &Scene<'_>) -> Result<Value> {
     let started = Instant::now();
-    let prepared = Drawing::prepare(scene.model, scene.chosen)?;
+    let prepared = drawing::prepare(scene.model, scene.chosen)?;
     let plan_seconds = started.elapsed().as_secs_f64();
-    let seen = scene.seen(gpu, &prepared)?;
+    let seen = scene.seen(gpu, bench, &prepared)?;
     let Area {
         x,
         y,
         width,
         height,
     } = seen.area;
-    let [x, y, width, height] = [x, y, width, height].map(|side| side * factor);
-    target.confine(Area {
-        x,
-        y,
-        width,
-        height,
+    bench.target_mut().confine(Area {
+        x: x * factor,
+        y: y * factor,
+        width: width * factor,
+        height: height * factor,
     });
-    let target = &*target;
-    let draw =
-        |prepared, slots| draw_with(gpu, target, scene, prepared, plan_seconds, &seen, slots);
+    let draw = |prepared, slots| draw_with(gpu, bench, scene, prepared, plan_seconds, &seen, slots);
     let stats = draw(prepared, scene.slots)?;
     if stats["ring"]["overflows"] == 0 {
         return Ok(stats);
     }
     // Control shaders ran more often than once a patch and took more than their share. Slots from the host do not depend on that.
     tracing::warn!("the scratch ring overflowed; drawing again with slots from the host");
-    draw(Drawing::prepare(scene.model, scene.chosen)?, Slots::Host)
+    draw(drawing::prepare(scene.model, scene.chosen)?, Slots::Host)
 }
 
 impl Scene<'_> {
     /// What is seen of it, and the depth tags that the cutting asks for.
-    fn seen(&self, gpu: &Gpu, prepared: &Prepared) -> Result<Framed> {
+    fn seen(&self, gpu: &Gpu, bench: &Bench, prepared: &Prepared) -> Result<Framed> {
         match self.sight {
             Sight::Given(view, area) => Ok(Framed {
                 view,
@@ -249,6 +252,8 @@ impl Scene<'_> {
             Sight::Framed(camera, Size { width, height }) => {
                 let subject = Subject {
                     gpu,
+                    bench,
+                    fill: self.solid(),
                     model: self.model,
                     prepared,
                     cutting: self.cutting,
@@ -260,11 +265,16 @@ impl Scene<'_> {
             }
         }
     }
+
+    /// What becomes of its triangles.
+    fn solid(&self) -> Fill {
+        Fill::Solid(self.shading.into())
+    }
 }
 
 fn draw_with(
     gpu: &Gpu,
-    target: &OffscreenTarget,
+    bench: &Bench,
     scene: &Scene<'_>,
     prepared: Prepared,
     plan_seconds: f64,
@@ -287,66 +297,33 @@ fn draw_with(
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
-    let mut drawing = Drawing::of(gpu, scene.model, prepared, options)?;
-    drawing.plan_seconds = plan_seconds;
-    drawing.upload(scene.points)?;
-    let list = drawing.draw_list(cut, tags.as_ref())?;
+    let mut drawing = Drawing::new(gpu, bench, scene.model, prepared, options, scene.points)?;
+    drawing.tags = tags.clone();
+    let list = drawing.draw_list(cut)?;
     let started = Instant::now();
-    let solid = Fill::Solid(scene.shading.into());
-    let mut pipelines = vec![drawing.pipelines(target, cut.spacing, solid)?];
-    if scene.wireframe {
-        pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
-    }
-    let counted = draw_frame(gpu, target, scene, view, &drawing, &pipelines, &list)?;
-    let seconds = started.elapsed().as_secs_f64();
+    let mut fills = vec![scene.solid()];
+    fills.extend(scene.wireframe.then_some(Fill::Lines));
+    let pipelines = fills.into_iter().map(|fill| {
+        let style = Style::new(options, cut.spacing, fill);
+        bench.pipelines(drawing.prepared(), style)
+    });
+    let pipelines = pipelines.collect::<Result<Vec<_>>>()?;
+    let shots = (0..).zip(&pipelines).map(|(round, pipelines)| {
+        Ok(Shot {
+            pipelines,
+            view: library_view(view, scene),
+            batches: list.round(round)?.collect(),
+        })
+    });
+    let counted = drawing.draw(&shots.collect::<Result<Vec<_>>>()?)?;
+    let first_frame = started.elapsed().as_secs_f64();
     // Patches without room in the ring are known to be missing: see `draw`.
-    if drawing.counters()?.overflows == 0 {
+    if drawing.surface().counters()?.overflows == 0 {
         let drawn = (0..pipelines.len()).flat_map(|_| list.batches());
         drawing.surface().arrival(drawn)?.check()?;
     }
+    let seconds = [plan_seconds, first_frame];
     statistics(gpu, scene, &drawing, &list, &counted, seconds)
-}
-
-/// Draws one frame: the surface, and with a second set of pipelines its lines. Returns the pipeline statistics of the surface.
-fn draw_frame(
-    gpu: &Gpu,
-    target: &OffscreenTarget,
-    scene: &Scene<'_>,
-    view: &View,
-    drawing: &Drawing<'_>,
-    pipelines: &[OwnPipelines<'_>],
-    list: &DrawList,
-) -> Result<Option<[u64; 3]>> {
-    let statistics = gpu.device.info().support.optional.pipeline_statistics_query;
-    let query = statistics
-        .then(|| StatisticsQuery::new(&gpu.device))
-        .transpose()?;
-    let device = gpu.device.raw();
-    // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-    gpu.device.submit(|cmd| unsafe {
-        let seen = library_view(view, scene);
-        drawing.surface().cmd_prepare(device, cmd, &[seen])?;
-        if let Some(query) = &query {
-            query.cmd_reset(cmd);
-        }
-        target.begin(cmd, CLEAR);
-        if let Some(query) = &query {
-            query.cmd_begin(cmd);
-        }
-        let mut drawn = drawing.cmd_draw(cmd, &pipelines[0], list.batches());
-        if let Some(query) = &query {
-            query.cmd_end(cmd);
-        }
-        if let Some(lines) = pipelines.get(1) {
-            let again = list.round(1)?;
-            drawn = drawn.and_then(|()| drawing.cmd_draw(cmd, lines, again));
-        }
-        target.end(cmd);
-        drawing.surface().cmd_read_back(device, cmd);
-        target.cmd_copy_to_host(cmd);
-        drawn
-    })?;
-    query.map(|query| query.read()).transpose()
 }
 
 /// What `--stats` writes.
@@ -356,28 +333,22 @@ fn statistics(
     drawing: &Drawing<'_>,
     list: &DrawList,
     counted: &Option<[u64; 3]>,
-    first_frame: f64,
+    [plan_seconds, first_frame]: [f64; 2],
 ) -> Result<Value> {
     let info = gpu.device.info();
-    let plans = drawing
-        .surface()
-        .prepared()
-        .plans
-        .clone()
-        .unwrap_or_default();
+    let plans = drawing.prepared().plans.clone().unwrap_or_default();
     let patches: usize = drawing
-        .surface()
         .prepared()
         .passes
         .iter()
         .map(|pass| pass.patches.len())
         .sum();
     let ring_batches = list.batches().filter(|batch| batch.points() > 0).count();
-    let counters = drawing.counters()?;
+    let counters = drawing.surface().counters()?;
     Ok(json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": drawing.surface().prepared().method,
+        "method": drawing.prepared().method,
         "level": scene.cutting.cut.level,
         "backend": scene.cutting.backend.name(),
         "residence": scene.cutting.residence.name(),
@@ -399,7 +370,7 @@ fn statistics(
         },
         "seconds": {
             "load": scene.load_seconds,
-            "plan": drawing.plan_seconds,
+            "plan": plan_seconds,
             "upload": drawing.upload_seconds,
             "first_frame": first_frame,
         },

@@ -270,7 +270,7 @@ fn draw(
     global: &Global,
 ) -> Result<Page> {
     let Size { width, height } = arguments.size;
-    let (mut target, factor) = render::target(gpu, width, height)?;
+    let (mut bench, factor) = render::bench(gpu, width, height)?;
     let cutting = arguments.steps.cutting();
     let seen = view(model, columns, arguments);
     let finish = |target: &OffscreenTarget| {
@@ -279,13 +279,21 @@ fn draw(
     let mut rows = Vec::new();
     for column in columns {
         let chosen = column.chosen;
-        let drawn = (&mut target, factor);
+        let drawn = (&mut bench, factor);
         render::draw_lit(gpu, drawn, model, chosen, cutting, seen, global)?;
-        let mut tiles = vec![finish(&target)];
+        let mut tiles = vec![finish(bench.target())];
         let maps = [&column.errors.positions, &column.errors.normals];
         for (errors, scale) in maps.into_iter().zip(scales) {
-            picture::draw_map(gpu, &target, model, &column.surface, errors, scale, &seen.0)?;
-            tiles.push(finish(&target));
+            picture::draw_map(
+                gpu,
+                bench.target(),
+                model,
+                &column.surface,
+                errors,
+                scale,
+                &seen.0,
+            )?;
+            tiles.push(finish(bench.target()));
         }
         rows.push((column, tiles));
     }

@@ -9,6 +9,7 @@ mod common;
 mod backends;
 mod cache;
 mod edges;
+mod flight;
 mod hexagon;
 mod lifetimes;
 mod misuse;

@@ -80,12 +80,12 @@ impl Bench {
     pub fn new(target: OffscreenTarget) -> Result<Bench> {
         let device = target.device().clone();
         let counts = device.info().support.optional.pipeline_statistics_query;
-        let statistics = counts.then(|| StatisticsQuery::new(&device));
+        let statistics = counts.then(|| StatisticsQuery::new(&device)).transpose()?;
         // SAFETY: the device is live.
         let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
         Ok(Bench {
             target,
-            statistics: statistics.transpose()?,
+            statistics,
             // SAFETY: the layout was just made by this device.
             layout: unsafe { Owned::new(&device, layout) },
             pipelines: RefCell::default(),

@@ -160,7 +160,7 @@ impl<'a> Subject<'a> {
             view: drawing::nowhere(),
             batches,
         };
-        let begin = |cmd| if fills { () } else { begin(cmd) };
+        let begin = |cmd| (!fills).then(|| begin(cmd)).unwrap_or_default();
         let counted = self.drawing.draw_between(&[shot], begin, end)?;
         Ok((cached, counted))
     }

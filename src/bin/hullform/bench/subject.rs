@@ -160,7 +160,11 @@ impl<'a> Subject<'a> {
             view: drawing::nowhere(),
             batches,
         };
-        let begin = |cmd| (!fills).then(|| begin(cmd)).unwrap_or_default();
+        let begin = |cmd| {
+            if !fills {
+                begin(cmd);
+            }
+        };
         let counted = self.drawing.draw_between(&[shot], begin, end)?;
         Ok((cached, counted))
     }

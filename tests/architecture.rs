@@ -217,7 +217,7 @@ fn imports() -> BTreeMap<String, BTreeSet<String>> {
     for (module, text) in &files {
         let mut rest = String::new();
         for statement in text.split_inclusive(';') {
-            let mut lines = statement.trim_start().split_whitespace();
+            let mut lines = statement.split_whitespace();
             let public = lines.next().is_some_and(|word| word.starts_with("pub"));
             let Some(at) = statement.find(" use ").filter(|_| public) else {
                 rest.push_str(statement);

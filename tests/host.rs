@@ -37,7 +37,7 @@ fn clear(device: &Device, target: &OffscreenTarget, colour: [f32; 4]) -> Result<
         }
         Ok(())
     })?;
-    Ok(target.read_pixels())
+    Ok(target.read_pixels().to_vec())
 }
 
 #[test]

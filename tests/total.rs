@@ -422,7 +422,7 @@ fn depths_want_a_tag_a_vertex() {
         for given in [0, count - 1, count, count + 1] {
             let tags = DepthTags::new(vec![1.0; given]);
             let vertices = vec![Vec3::ONE; given];
-            let depths = outline.depths(&tags).map(|depths| depths.len());
+            let depths = outline.depths(&tags.depths).map(|depths| depths.len());
             let curved = DepthTags::by_curvature(outline, &vertices, f32::NAN);
             let seen = DepthTags::by_screen(outline, &vertices, [[0.0; 4]; 4], [0.0; 2], 0.0);
             let counts = [
@@ -450,12 +450,7 @@ fn depths_want_a_tag_a_vertex() {
         let tags = DepthTags::by_distance(&[Vec3::splat(odd)], Vec3::ZERO, odd, odd);
         assert!(tags.depths.iter().all(|depth| (0.0..=6.0).contains(depth)));
     }
-    assert_eq!(
-        Outline::default()
-            .depths(&DepthTags::default())
-            .expect("no side"),
-        []
-    );
+    assert_eq!(Outline::default().depths(&[]).expect("no side"), []);
 }
 
 /// What the best method refuses after all, as it does tables that are too large, the next one draws.

@@ -231,6 +231,19 @@ impl fmt::Debug for Case {
     }
 }
 
+/// A group of cases: a file of this folder.
+pub struct Group {
+    /// The first word of its cases' names.
+    pub name: &'static str,
+    /// What it is about, in a line.
+    pub about: &'static str,
+    /// Its cases.
+    pub cases: fn() -> Vec<Case>,
+    /// Its cases for a mesh of the user's, by the name that [`Context::models`](super::Context::models) gives it; None when meshes do not
+    /// concern it.
+    pub model_cases: Option<fn(&str) -> Vec<Case>>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

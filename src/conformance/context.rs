@@ -2,12 +2,11 @@
 
 use std::cell::{Cell, OnceCell};
 use std::fmt;
-use std::rc::Rc;
 use std::str::FromStr;
 
 use glob::Pattern;
 
-use crate::conformance::capture::Bench;
+use crate::conformance::bench::{Bench, Seen};
 use crate::conformance::random::Random;
 use crate::error::{Error, Result};
 use crate::gpu::{ExtraFeatures, Slots, Workaround};
@@ -123,9 +122,6 @@ pub struct Context {
     wrong: Cell<bool>,
     seen: Seen,
 }
-
-/// How many vertices, words or pixels the case that runs has seen of what it drew.
-pub(super) type Seen = Rc<Cell<u64>>;
 
 impl Context {
     /// Vulkan is loaded, and devices are opened, when a case asks for one: what goes wrong meanwhile belongs to that case.

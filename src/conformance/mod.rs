@@ -10,6 +10,7 @@
 //! What the suite found in drivers stands in [`bugs`].
 
 pub mod backends;
+mod bench;
 pub mod bugs;
 mod capture;
 mod case;
@@ -35,12 +36,12 @@ mod visibility;
 mod witness;
 mod worker;
 
-pub use case::{Case, Check, Finding, LIMIT, Status};
+pub use case::{Case, Check, Finding, Group, LIMIT, Status};
 pub use context::{Context, Fault, FaultKind, Settings};
 pub use expectations::{Expectation, Expectations};
 pub use opened::Opened;
 pub use random::Random;
-pub use registry::{GROUPS, Group, Registry};
+pub use registry::{GROUPS, Registry};
 pub use report::{CaseResult, Report};
 pub use runner::{RunOptions, Runner};
 pub use worker::work;

@@ -3,23 +3,10 @@
 use glob::Pattern;
 
 use crate::conformance::{
-    Case, backends, coordinates, determinism, edges, limit, robustness, scale, statistics,
+    Case, Group, backends, coordinates, determinism, edges, limit, robustness, scale, statistics,
     visibility, witness,
 };
 use crate::error::{Error, Result};
-
-/// A group of cases: a file of this folder.
-pub struct Group {
-    /// The first word of its cases' names.
-    pub name: &'static str,
-    /// What it is about, in a line.
-    pub about: &'static str,
-    /// Its cases.
-    pub cases: fn() -> Vec<Case>,
-    /// Its cases for a mesh of the user's, by the name that [`Context::models`](super::Context::models) gives it; None when meshes do not
-    /// concern it.
-    pub model_cases: Option<fn(&str) -> Vec<Case>>,
-}
 
 /// Every group.
 pub const GROUPS: &[Group] = &[

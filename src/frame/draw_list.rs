@@ -344,7 +344,7 @@ fn tagged_levels(
     if let Some((vertex, depth)) = tagged.find(|(_, depth)| !(0.0..=6.0).contains(depth)) {
         return Err(Error::Misuse(Misuse::Depth { vertex, depth }));
     }
-    let sides: Vec<f32> = prepared.outline.depths(tags)?;
+    let sides: Vec<f32> = prepared.outline.depths(&tags.depths)?;
     let level = |side: u32| backend.level_of(sides[side as usize]).min(cut.level);
     let of_pass = |pass: &Pass| {
         let patches = pass.patches.iter().zip(&pass.sides);

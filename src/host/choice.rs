@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::driver::text;
-use crate::gpu::{Driver, Support, Workaround, failed, workarounds};
+use crate::gpu::{Driver, Support, Workaround, workarounds};
 use crate::host::Instance;
+use crate::host::instance::unavailable;
 use ash::vk;
 use std::fmt::Write;
 
@@ -63,11 +64,6 @@ pub fn devices(instance: &Instance) -> Result<Vec<DeviceInfo>> {
     })?;
     let describe = |(index, physical)| describe(instance, index, physical);
     Ok(all.into_iter().enumerate().map(describe).collect())
-}
-
-/// For `map_err`: without what `call` would give there is no device.
-pub(super) fn unavailable(call: &'static str) -> impl Fn(vk::Result) -> Error {
-    move |code| Error::NoDevice(failed(call)(code).to_string())
 }
 
 fn describe(instance: &Instance, index: usize, physical: vk::PhysicalDevice) -> DeviceInfo {

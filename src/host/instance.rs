@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::failed;
-use crate::host::choice::unavailable;
 use ash::{ext, khr, vk};
 use std::borrow::Cow;
 use std::ffi::{CStr, c_char, c_void};
@@ -87,6 +86,11 @@ impl Messages {
         // Pushing a string cannot leave the list half-changed, so a panic elsewhere does not spoil it.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// For `map_err`: without what `call` would give there is no device.
+pub(super) fn unavailable(call: &'static str) -> impl Fn(vk::Result) -> Error {
+    move |code| Error::NoDevice(failed(call)(code).to_string())
 }
 
 fn load() -> Result<ash::Entry> {

@@ -19,6 +19,45 @@ pub enum Encoding {
     Unorm,
 }
 
+/// A part of a picture, in pixels from its left upper corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Area {
+    /// Its left side.
+    pub x: u32,
+    /// Its upper side.
+    pub y: u32,
+    /// Its width.
+    pub width: u32,
+    /// Its height.
+    pub height: u32,
+}
+
+impl Area {
+    /// What of it lies in a picture of this size; one pixel where nothing does.
+    fn within(self, extent: vk::Extent2D) -> Area {
+        let (x, y) = (self.x.min(extent.width - 1), self.y.min(extent.height - 1));
+        Area {
+            x,
+            y,
+            width: self.width.clamp(1, extent.width - x),
+            height: self.height.clamp(1, extent.height - y),
+        }
+    }
+
+    fn rect(self) -> vk::Rect2D {
+        vk::Rect2D {
+            offset: vk::Offset2D {
+                x: self.x as i32,
+                y: self.y as i32,
+            },
+            extent: vk::Extent2D {
+                width: self.width,
+                height: self.height,
+            },
+        }
+    }
+}
+
 /// Colour and depth images with a render pass that allows the ring barrier
 /// ([`cmd_ring_barrier`](crate::gpu::ring::cmd_ring_barrier)), and a buffer that the picture is copied to.
 ///
@@ -27,6 +66,7 @@ pub enum Encoding {
 pub struct OffscreenTarget {
     device: Device,
     extent: vk::Extent2D,
+    area: Area,
     formats: Formats,
     render_pass: vk::RenderPass,
     framebuffer: vk::Framebuffer,
@@ -77,6 +117,12 @@ impl OffscreenTarget {
         let mut target = OffscreenTarget {
             device: device.clone(),
             extent: vk::Extent2D { width, height },
+            area: Area {
+                x: 0,
+                y: 0,
+                width,
+                height,
+            },
             formats,
             render_pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
@@ -87,6 +133,11 @@ impl OffscreenTarget {
         target.make_framebuffer()?;
         target.make_pixels()?;
         Ok(target)
+    }
+
+    /// The device that it is on.
+    pub fn device(&self) -> &Device {
+        &self.device
     }
 
     /// The render pass; pipelines are made for its subpass 0.
@@ -104,8 +155,19 @@ impl OffscreenTarget {
         self.extent
     }
 
-    /// Begins the render pass: colour becomes `clear` (linear, whatever the encoding), depth 1. Viewport and scissor cover the
-    /// picture (for pipelines that leave them dynamic).
+    /// The part that is drawn: at first the whole picture.
+    pub fn area(&self) -> Area {
+        self.area
+    }
+
+    /// Draws only a part from now on, where all that is to be seen lies: nothing else is cleared, resolved and copied, and memory beside it
+    /// is not touched. What lies there has the very pixels that it has in the whole.
+    pub fn confine(&mut self, area: Area) {
+        self.area = area.within(self.extent);
+    }
+
+    /// Begins the render pass: in the [`area`](Self::area) colour becomes `clear` (linear, whatever the encoding), depth 1. The viewport covers
+    /// the picture and the scissor the area (for pipelines that leave them dynamic).
     ///
     /// # Safety
     /// `cmd` is recording on this target's device, outside of a render pass, and of a graphics queue.
@@ -121,7 +183,7 @@ impl OffscreenTarget {
                 depth_stencil: depth,
             },
         ];
-        let area = vk::Rect2D::default().extent(self.extent);
+        let area = self.area.rect();
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(self.render_pass)
             .framebuffer(self.framebuffer)
@@ -149,7 +211,7 @@ impl OffscreenTarget {
         unsafe { self.device.raw().cmd_end_render_pass(cmd) };
     }
 
-    /// Copies the picture to where [`OffscreenTarget::read_pixels`] finds it.
+    /// Copies the area to where [`OffscreenTarget::read_pixels`] finds it.
     ///
     /// # Safety
     /// `cmd` is recording on this target's device, outside of a render pass, after a pass of this target that comes earlier in
@@ -162,7 +224,12 @@ impl OffscreenTarget {
                     .aspect_mask(vk::ImageAspectFlags::COLOR)
                     .layer_count(1),
             )
-            .image_extent(self.extent.into());
+            .image_offset(vk::Offset3D {
+                x: self.area.x as i32,
+                y: self.area.y as i32,
+                z: 0,
+            })
+            .image_extent(self.area.rect().extent.into());
         // To the host, and to the next copy into the same buffer.
         let written = vk::BufferMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
@@ -195,9 +262,10 @@ impl OffscreenTarget {
         }
     }
 
-    /// The picture that was copied last: RGBA, 8 bits each, rows from the top. Unspecified before the first copy.
-    pub fn read_pixels(&self) -> Vec<u8> {
-        self.pixels().bytes().to_vec()
+    /// What was copied last, the [`area`](Self::area) alone: RGBA, 8 bits each, rows from the top. Unspecified before the first copy.
+    pub fn read_pixels(&self) -> &[u8] {
+        let Area { width, height, .. } = self.area;
+        &self.pixels().bytes()[..4 * width as usize * height as usize]
     }
 
     fn pixels(&self) -> &Buffer {

@@ -7,6 +7,7 @@ mod obj;
 mod placement;
 mod scheme;
 pub mod sharpness;
+mod suitable;
 pub mod topology;
 mod triangulate;
 

@@ -9,7 +9,6 @@ use crate::mesh::Model;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
 use crate::method::ptex::{Child, child};
-use crate::method::tags::DepthTags;
 
 /// The edges and faces of a control mesh. Both count as sides, edges first: a patch's edge is a part of one of its mesh's edges, or lies within
 /// one of its faces.
@@ -39,14 +38,14 @@ impl Outline {
         outline
     }
 
-    /// The depth of each side: of an edge the greater of its ends', of a face the greatest of its edges'.
+    /// The depth of each side, by one a control vertex: of an edge the greater of its ends', of a face the greatest of its edges'.
     ///
     /// # Errors
-    /// [`Misuse::Count`] for other than one tag a control vertex.
-    pub fn depths(&self, tags: &DepthTags) -> Result<Vec<f32>> {
-        self.check_count("depth tags", tags.depths.len())?;
+    /// [`Misuse::Count`] for other than one depth a control vertex.
+    pub fn depths(&self, tags: &[f32]) -> Result<Vec<f32>> {
+        self.check_count("depth tags", tags.len())?;
         let greatest = |vertices: &[u32]| {
-            let tags = vertices.iter().map(|&vertex| tags.depths[vertex as usize]);
+            let tags = vertices.iter().map(|&vertex| tags[vertex as usize]);
             tags.fold(0.0, f32::max)
         };
         let edges = self.edges.iter().map(|ends| greatest(ends));

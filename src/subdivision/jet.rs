@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::subdivision::limit::LimitStencil;
 
@@ -136,5 +136,22 @@ impl Jet {
         } else {
             0.0
         }
+    }
+}
+
+/// Makes points relative to one of them, and that to what it was relative to.
+pub(super) fn recentred(points: &mut [DVec3], origin: &mut DVec3, vertex: u32) {
+    let at = points[vertex as usize];
+    points.iter_mut().for_each(|point| *point -= at);
+    *origin += at;
+}
+
+/// The corner of a face that (u, v) is nearest to.
+pub(super) fn nearest_corner(uv: DVec2) -> u32 {
+    match (uv.x < 0.5, uv.y < 0.5) {
+        (true, true) => 0,
+        (false, true) => 1,
+        (false, false) => 2,
+        (true, false) => 3,
     }
 }

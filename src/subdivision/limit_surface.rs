@@ -5,13 +5,12 @@ use glam::{DVec2, DVec3};
 use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{ControlMesh, Placement, Scheme};
-use crate::patch::bspline;
 use crate::subdivision::cell::SchemeCell;
-use crate::subdivision::jet::{Jet, Sum};
+use crate::subdivision::jet::{Jet, Sum, nearest_corner, recentred};
 use crate::subdivision::limit::limit_stencil;
 use crate::subdivision::masks::Blend;
 use crate::subdivision::refine::{Refinement, refine, with_neighbours};
-use crate::subdivision::regular::{BsplinePatch, bspline_patch};
+use crate::subdivision::regular::{bspline_jet, bspline_patch};
 use crate::subdivision::schemes::rings;
 use crate::subdivision::split::refine_all;
 
@@ -300,13 +299,6 @@ impl LimitSurface {
     }
 }
 
-/// Makes points relative to one of them, and that to what it was relative to.
-pub(super) fn recentred(points: &mut [DVec3], origin: &mut DVec3, vertex: u32) {
-    let at = points[vertex as usize];
-    points.iter_mut().for_each(|point| *point -= at);
-    *origin += at;
-}
-
 impl Cell {
     /// The child at a corner.
     fn child(&self, corner: u32) -> Cell {
@@ -347,33 +339,7 @@ impl Cell {
     }
 }
 
-/// A B-spline patch at (u, v).
-pub(super) fn bspline_jet(patch: &BsplinePatch, positions: &[DVec3], uv: DVec2) -> Jet {
-    let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
-    let points = patch
-        .points
-        .map(|point| DVec3::blend(&point.mask(), positions));
-    let sum = |u: [f64; 4], v: [f64; 4]| {
-        let weights: [(u32, f64); 16] = std::array::from_fn(|i| (i as u32, u[i % 4] * v[i / 4]));
-        Sum::of(&weights, &points)
-    };
-    Jet {
-        position: sum(u.value, v.value).value,
-        du: sum(u.derivative, v.value),
-        dv: sum(u.value, v.derivative),
-    }
-}
-
 fn corner_at(uv: DVec2) -> Option<u32> {
     let exact = |x: f64| x == 0.0 || x == 1.0;
     (exact(uv.x) && exact(uv.y)).then(|| nearest_corner(uv))
-}
-
-pub(super) fn nearest_corner(uv: DVec2) -> u32 {
-    match (uv.x < 0.5, uv.y < 0.5) {
-        (true, true) => 0,
-        (false, true) => 1,
-        (false, false) => 2,
-        (true, false) => 3,
-    }
 }

@@ -6,9 +6,10 @@ use crate::mesh::Scheme;
 use crate::mesh::topology::Fan;
 use crate::subdivision::Mask;
 use crate::subdivision::deep::{deep_limit, orthonormal_masks};
+use crate::subdivision::jet::nearest_corner;
 use crate::subdivision::jet::{CLEAR, Jet, Sum};
 use crate::subdivision::limit::{TangentPlane, closing_tangents, is_unpromised, tangent_plane};
-use crate::subdivision::limit_surface::{LimitSurface, nearest_corner};
+use crate::subdivision::limit_surface::LimitSurface;
 
 /// How far from a corner its surroundings are asked, in ptex coordinates: as near as tess level 64 ever comes, the greatest that Vulkan asks for.
 const NEARBY: f64 = 1.0 / 64.0;

@@ -4,11 +4,14 @@
 //! section 4.1); and faces with one semi-sharp crease (Nießner et al. 2012). An infinite crease separates its two sides, so only the
 //! sector on the face's own side has to be regular.
 
+use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
 use crate::mesh::sharpness::{Rule, decayed, is_semi_sharp, rule};
 use crate::mesh::topology::Topology;
-use crate::subdivision::masks::Mask;
+use crate::patch::bspline;
+use crate::subdivision::jet::{Jet, Sum};
+use crate::subdivision::masks::{Blend, Mask};
 
 /// A control point of a B-spline patch: a vertex, or one mirrored beyond a sharp edge or corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -209,4 +212,21 @@ fn opposite_in(topology: &Topology, face: u32, vertex: u32) -> u32 {
         .position(|&v| v == vertex)
         .expect("a fan's faces touch its vertex");
     vertices[(corner + 2) % 4]
+}
+
+/// A B-spline patch at (u, v).
+pub(super) fn bspline_jet(patch: &BsplinePatch, positions: &[DVec3], uv: DVec2) -> Jet {
+    let (u, v) = (bspline::basis(uv.x), bspline::basis(uv.y));
+    let points = patch
+        .points
+        .map(|point| DVec3::blend(&point.mask(), positions));
+    let sum = |u: [f64; 4], v: [f64; 4]| {
+        let weights: [(u32, f64); 16] = std::array::from_fn(|i| (i as u32, u[i % 4] * v[i / 4]));
+        Sum::of(&weights, &points)
+    };
+    Jet {
+        position: sum(u.value, v.value).value,
+        du: sum(u.derivative, v.value),
+        dv: sum(u.value, v.derivative),
+    }
 }

@@ -1,7 +1,8 @@
 //! Triangles of a triangular patch: its vertices lie on rings within one another (Vulkan spec, "Triangle Tessellation").
 
+use std::cmp::Ordering;
+
 use crate::tessellation::levels::{inner_rings, ring_vertices};
-use crate::tessellation::triangulate::{order, stitch};
 
 /// The distances from the edges 0 (from corner 0 to corner 1), 1 and 2.
 fn distances([u, v]: [f32; 2]) -> [f32; 3] {
@@ -90,6 +91,38 @@ fn sorted(uv: &[[f32; 2]], side: usize, mut vertices: Vec<u32>) -> Vec<u32> {
     let place = |vertex: u32| along(side, uv[vertex as usize]);
     vertices.sort_by(|&a, &b| order(place(a), place(b)));
     vertices
+}
+
+pub(super) fn order(a: f32, b: f32) -> Ordering {
+    a.partial_cmp(&b).expect("tess coordinates are numbers")
+}
+
+/// Fills the gap between a side and the inside, always advancing where the next vertex is nearer.
+pub(super) fn stitch(
+    along: impl Fn(u32) -> f32,
+    outer: &[u32],
+    inner: &[u32],
+    triangles: &mut Vec<[u32; 3]>,
+) {
+    if inner.is_empty() {
+        return;
+    }
+    let (mut i, mut j) = (0, 0);
+    while i + 1 < outer.len() || j + 1 < inner.len() {
+        let next_outer = outer
+            .get(i + 1)
+            .map_or(f32::INFINITY, |&vertex| along(vertex));
+        let next_inner = inner
+            .get(j + 1)
+            .map_or(f32::INFINITY, |&vertex| along(vertex));
+        if next_outer <= next_inner {
+            triangles.push([outer[i], outer[i + 1], inner[j]]);
+            i += 1;
+        } else {
+            triangles.push([outer[i], inner[j + 1], inner[j]]);
+            j += 1;
+        }
+    }
 }
 
 #[cfg(test)]

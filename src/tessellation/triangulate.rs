@@ -3,8 +3,7 @@
 //! Vulkan fixes where the vertices lie but not how they are joined between the outer edges and the inside. This joins them by walking both
 //! sides of that gap together. Inside, quads are a full grid, triangles are rings within one another.
 
-use std::cmp::Ordering;
-
+use crate::tessellation::rings::{order, stitch};
 use crate::tessellation::{Domain, rings};
 
 /// The triangles of a patch, counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order.
@@ -91,10 +90,6 @@ fn sorted(uv: &[[f32; 2]], mut vertices: Vec<u32>, side: usize) -> Vec<u32> {
     vertices
 }
 
-pub(super) fn order(a: f32, b: f32) -> Ordering {
-    a.partial_cmp(&b).expect("tess coordinates are numbers")
-}
-
 /// The inside vertices row by row, each sorted by u.
 fn rows(uv: &[[f32; 2]], mut inside: Vec<u32>) -> Vec<Vec<u32>> {
     let side = (inside.len() as f64).sqrt().round() as usize;
@@ -126,34 +121,6 @@ fn inner_side(rows: &[Vec<u32>], side: usize) -> Vec<u32> {
         1 => rows.iter().map(|row| row[row.len() - 1]).collect(),
         2 => last.clone(),
         _ => rows.iter().map(|row| row[0]).collect(),
-    }
-}
-
-/// Fills the gap between a side and the inside, always advancing where the next vertex is nearer.
-pub(super) fn stitch(
-    along: impl Fn(u32) -> f32,
-    outer: &[u32],
-    inner: &[u32],
-    triangles: &mut Vec<[u32; 3]>,
-) {
-    if inner.is_empty() {
-        return;
-    }
-    let (mut i, mut j) = (0, 0);
-    while i + 1 < outer.len() || j + 1 < inner.len() {
-        let next_outer = outer
-            .get(i + 1)
-            .map_or(f32::INFINITY, |&vertex| along(vertex));
-        let next_inner = inner
-            .get(j + 1)
-            .map_or(f32::INFINITY, |&vertex| along(vertex));
-        if next_outer <= next_inner {
-            triangles.push([outer[i], outer[i + 1], inner[j]]);
-            i += 1;
-        } else {
-            triangles.push([outer[i], inner[j + 1], inner[j]]);
-            j += 1;
-        }
     }
 }
 

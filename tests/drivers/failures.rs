@@ -35,7 +35,7 @@ const EVERY: &str = "HULLFORM_EVERY_FAILURE";
 const LONG: [&str; 2] = ["verify caches", "edges"];
 
 /// Every way that the program and the examples have to Vulkan, with little to draw.
-const PROGRAMS: [Program; 11] = [
+const PROGRAMS: [Program; 12] = [
     program("devices", "devices --device 0"),
     program(
         "render",
@@ -44,6 +44,10 @@ const PROGRAMS: [Program; 11] = [
     program(
         "render by patterns",
         "render builtin:cube --size 32x24 --level 4 --method pn --backend pattern --points device -o OUT/a.png",
+    ),
+    program(
+        "render from a cache",
+        "render builtin:cube --size 32x24 --level 4 --residence cache -o OUT/a.png",
     ),
     program(
         "tessellate",

@@ -132,8 +132,8 @@ fn the_front_is_where_faces_are_counter_clockwise() {
                     vk::CullModeFlags::FRONT,
                 ]
                 .map(|cull| {
-                    gpu.cull.set(cull);
                     let mut loaded = load(&gpu, &model, prepared.clone(), backend, cut);
+                    loaded.cull = cull;
                     loaded
                         .capture(cut, Fill::Solid(Shading::Patch))
                         .expect("it is drawn");

@@ -1,7 +1,9 @@
 //! Control points in a pose's cache: the same bits as through the ring, by every back-end, each computed once.
 
+use ash::vk;
 use glam::Vec3;
-use hullform::gpu::{Backend, Cut, Fill, Residence, SurfaceOptions};
+use hullform::gpu::{Backend, CachePipelines, Cut, Fill, Residence, SurfaceOptions};
+use hullform::host::Owned;
 use hullform::mesh::{Model, Scheme};
 use hullform::tessellation::Spacing;
 use hullform::{Error, Misuse};
@@ -141,11 +143,14 @@ fn what_did_not_move_is_not_computed_again() {
         .iter()
         .map(|position| (*position * Vec3::new(1.0, 1.5, 0.5)).to_array())
         .collect();
-    loaded.replace_positions(&moved);
+    loaded
+        .replace_positions(&moved)
+        .expect("one a control vertex");
     assert_eq!(loaded.cache(&lists[1]).expect("there is room"), all);
     let own = loaded.capture(deep, Fill::Discard).expect("it is drawn");
     let mut ring = load(&gpu, &model, Residence::Ring, Backend::Tessellator, deep);
-    ring.replace_positions(&moved);
+    ring.replace_positions(&moved)
+        .expect("one a control vertex");
     let right = ring.capture(deep, Fill::Discard).expect("it is drawn");
     assert_same_bits("moved", &own, &right);
     let same = own
@@ -178,7 +183,17 @@ fn what_is_not_cached_is_not_drawn() {
     // A pose that was made for a ring has no cache.
     let mut ring = load(&gpu, &model, Residence::Ring, Backend::Tessellator, deep);
     let own = ring.surface().draw_list(deep, None).expect("a cut");
-    let refused = ring.cache(&own);
+    assert_eq!(ring.cache(&own).expect("there is nothing to do"), 0);
+    let (device, layout, cache) = (gpu.device.raw(), gpu.layout(), vk::PipelineCache::null());
+    // SAFETY: all of one live device; nothing is recorded.
+    let refused = unsafe {
+        let pipelines = CachePipelines::new(device, layout, cache, ring.prepared());
+        let pipelines = Owned::new(&gpu.device, pipelines.expect("its method has a cache"));
+        gpu.device.submit(|cmd| {
+            let surface = ring.surface_mut();
+            surface.cmd_cache(device, cmd, layout, &pipelines, &own)
+        })
+    };
     assert!(matches!(refused, Err(Error::Misuse(Misuse::NotCached))));
     drop(ring);
     drop(loaded);

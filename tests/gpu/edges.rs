@@ -61,10 +61,10 @@ fn displaced_surfaces_move_as_their_twin_says() {
         let loaded = gpu.load(&model, prepared, workarounds, capturing);
         let mut loaded = loaded.expect("the ring holds a patch");
         for cut in cuts {
-            loaded.displacement = Displacement::default();
+            loaded.view.displacement = Displacement::default();
             let smooth = loaded.capture(cut, Fill::Discard).expect("it is drawn");
             let diagonal = model.diagonal() as f32;
-            loaded.displacement = Displacement {
+            loaded.view.displacement = Displacement {
                 height: 0.05 * diagonal,
                 frequency: 20.0 / diagonal,
             };
@@ -77,6 +77,7 @@ fn displaced_surfaces_move_as_their_twin_says() {
             let mut moved = 0;
             for (before, after) in pairs {
                 let twin = loaded
+                    .view
                     .displacement
                     .displace(before.position.into(), before.normal.into());
                 let (position, normal) = (Vec3::from(after.position), Vec3::from(after.normal));

@@ -72,8 +72,6 @@ fn picture(
         Ok(())
     });
     drawn.expect("it is executed");
-    // SAFETY: every submission has been waited for.
-    unsafe { pipelines.destroy(device) };
     loaded.pixels()
 }
 
@@ -228,8 +226,6 @@ fn several_views_in_one_draw_are_refused_where_points_are_in_the_ring() {
             }
         }
         assert!(refused > 0 && drawn > 0, "{refused} {drawn}");
-        // SAFETY: every submission has been waited for.
-        unsafe { pipelines.destroy(device) };
         drop(loaded);
     }
     gpu.finish();

@@ -152,8 +152,6 @@ impl<'a> Scene<'a> {
                 captured.push(vertices);
             }
         }
-        // SAFETY: every submission has been waited for.
-        unsafe { pipelines.destroy(device) };
         captured
     }
 }
@@ -276,8 +274,7 @@ fn what_does_not_belong_together_is_not_drawn() {
     assert_eq!(refused(right, &[], 0), view(0, 0));
     assert_eq!(refused(right, &[NOWHERE; 65], 0), view(64, 64));
     assert_eq!(refused(right, &[NOWHERE; 64], 63), None);
-    // SAFETY: every submission has been waited for.
-    unsafe { pipelines.destroy(device) };
+    drop(pipelines);
     drop(scenes);
     gpu.finish();
 }

@@ -10,6 +10,7 @@ mod backends;
 mod cache;
 mod canvas;
 mod edges;
+mod flight;
 mod hexagon;
 mod instances;
 mod lifetimes;

@@ -123,7 +123,6 @@ fn an_engines_own_memory_will_do() {
         let captured = surface.captured().expect("it was read back");
         let captured: Vec<_> = captured.iter().map(bits).collect();
         surface.destroy(device, &mut own);
-        pipelines.destroy(device);
         captured
     };
     assert!(

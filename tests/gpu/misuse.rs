@@ -227,7 +227,9 @@ fn positions_can_be_replaced_after_the_tables_staging_is_given_back() {
         let moved = still.iter().map(|&[x, y, z]| [x + y, 2.0 * z, y]);
         let moved: Vec<[f32; 3]> = moved.collect();
         let shown = [&still, &moved, &still].map(|positions| {
-            loaded.replace_positions(positions);
+            loaded
+                .replace_positions(positions)
+                .expect("one a control vertex");
             let frame = loaded.capture(at, Fill::Discard).expect("it is drawn");
             frame.passes.concat().iter().map(bits).collect::<Vec<_>>()
         });

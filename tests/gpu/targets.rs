@@ -132,8 +132,6 @@ impl<'a> Scene<'a> {
             Ok(())
         });
         drawn.expect("it is executed");
-        // SAFETY: every submission has been waited for.
-        unsafe { pipelines.destroy(device) };
     }
 
     /// The picture that a classic render pass makes.
@@ -159,8 +157,6 @@ impl<'a> Scene<'a> {
             Ok(())
         });
         drawn.expect("it is executed");
-        // SAFETY: every submission has been waited for.
-        unsafe { pipelines.destroy(device) };
         self.loaded.pixels()
     }
 }

@@ -1,7 +1,12 @@
 //! The camera of a picture: it turns around what is drawn, which fills the frame.
 
-use glam::{DMat3, DVec2, DVec3, DVec4, Mat4, Vec3};
+use glam::{DMat3, DVec2, DVec3, DVec4, Mat4, UVec2, Vec3};
+use hullform::host::Area;
 use std::str::FromStr;
+
+/// How far beyond the points that are framed something may yet be drawn, as a share of the picture that they take: what the frame leaves free
+/// on either side of them, see [`FILL`].
+const BEYOND: f64 = 0.5 * (1.0 / FILL - 1.0);
 
 /// Half the angle under which the eye sees a sphere around all that is drawn.
 const HALF_VIEW: f64 = 20.0 * std::f64::consts::PI / 180.0;
@@ -31,6 +36,41 @@ pub struct View {
     pub clip_from_model: Mat4,
     /// The eye in model space.
     pub eye: Vec3,
+}
+
+impl View {
+    /// The part of a picture of this size in which these points lie, with some room around them; all of it when a point is nowhere.
+    pub fn area(&self, points: &[Vec3], [width, height]: [u32; 2]) -> Area {
+        let whole = Area {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        };
+        let size = UVec2::new(width, height).as_dvec2();
+        let from_model = self.clip_from_model.as_dmat4();
+        let seen = points.iter().map(|point| {
+            let clip = from_model * point.as_dvec3().extend(1.0);
+            (0.5 * (clip.truncate().truncate() / clip.w + 1.0) * size).extend(clip.w)
+        });
+        let (low, high) = bounds(seen);
+        // Of a sum everything shows that was no number, which least and greatest leave out.
+        let sum: Vec3 = points.iter().sum();
+        if !sum.is_finite() || !(high - low).is_finite() || low.z <= 0.0 {
+            return whole;
+        }
+        let [low, high] = [low, high].map(|corner| corner.truncate());
+        // A line over an edge is a pixel wide.
+        let beyond = BEYOND * (high - low).max_element() + 2.0;
+        let low = (low - beyond).floor().clamp(DVec2::ZERO, size).as_uvec2();
+        let high = (high + beyond).ceil().clamp(DVec2::ZERO, size).as_uvec2();
+        Area {
+            x: low.x,
+            y: low.y,
+            width: high.x - low.x,
+            height: high.y - low.y,
+        }
+    }
 }
 
 impl FromStr for Camera {
@@ -146,6 +186,18 @@ fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_area_has_the_points_and_no_more_than_the_room_that_the_frame_leaves() {
+        let view = camera("40,22,1").frame(&corners(), 2.0);
+        let Area {
+            x, width, height, ..
+        } = view.area(&corners(), [1000, 500]);
+        assert!(height >= 499 && width < 700, "{width} {height}");
+        assert!(x > 100 && x + width < 900);
+        let lost = [Vec3::ZERO, Vec3::NAN];
+        assert_eq!(view.area(&lost, [10, 20]).width, 10);
+    }
 
     fn corners() -> Vec<Vec3> {
         let side = |bit: usize, low: f32, high: f32| if bit & 1 == 0 { low } else { high };

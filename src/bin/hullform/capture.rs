@@ -1,14 +1,14 @@
 //! What the evaluation shader produces, read back from the device.
 
 use crate::camera::Camera;
-use crate::drawing::Drawing;
+use crate::drawing::{self, Drawing};
 use crate::framing::Subject;
 use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
-use hullform::gpu::{Batch, Fill, Pipelines, SurfaceOptions, View};
-use hullform::host::OffscreenTarget;
+use hullform::gpu::{Batch, Fill, SurfaceOptions};
+use hullform::host::{Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{Displacement, to_ptex};
 use hullform::{Error, Result, abi};
@@ -17,7 +17,7 @@ use hullform::{Error, Result, abi};
 const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
 
 /// The picture in which depth tags see the surface: `render`'s own.
-const SEEN: [f32; 2] = [1280.0, 720.0];
+const SEEN: [u32; 2] = [1280, 720];
 
 /// Tessellates `model` on the device, some patches at a time, and gathers what the evaluating shader produced. Depth tags, if any, go by what
 /// `camera` sees.
@@ -39,16 +39,19 @@ pub fn capture(
         backend,
         residence,
         ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
+        slots: drawing::slots(global.slots),
         capture_vertices: CAPTURED,
         greatest_level: cut.level,
         ..Default::default()
     };
-    let prepared = Drawing::prepare(model, chosen)?;
+    let prepared = drawing::prepare(model, chosen)?;
+    let bench = drawing::blind(gpu)?;
     let camera = camera.filter(|_| cutting.adaptive.is_some());
     let seen = camera.map(|camera| {
         let subject = Subject {
             gpu,
+            bench: &bench,
+            fill: Fill::Discard,
             model,
             prepared: &prepared,
             cutting,
@@ -58,82 +61,37 @@ pub fn capture(
         };
         subject.framed(camera, SEEN)
     });
-    let tags = seen.transpose()?.and_then(|(_, tags)| tags);
-    let mut drawing = Drawing::of(gpu, model, prepared, options)?;
-    drawing.upload(global.points)?;
-    // Nothing is rasterised, but draws need a render pass.
-    let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
-    let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;
-    let list = drawing.draw_list(cut, tags.as_ref())?;
+    let tags = seen.transpose()?.and_then(|framed| framed.tags);
+    let mut drawing = Drawing::new(gpu, &bench, model, prepared, options, global.points)?;
+    drawing.tags = tags;
+    let list = drawing.draw_list(cut)?;
+    let style = Style::new(options, cut.spacing, Fill::Discard);
+    let pipelines = bench.pipelines(drawing.prepared(), style)?;
     let mut surface = Surface::default();
     for batch in list.batches() {
-        let captured = capture_batch(gpu, &drawing, &target, &pipelines, batch)?;
+        drawing.draw(&[Shot {
+            pipelines: &pipelines,
+            view: drawing::nowhere(),
+            batches: vec![batch],
+        }])?;
+        drawing.check([batch])?;
+        let captured = once_each(&drawing, batch)?;
         add_patches(&mut surface, &captured, model, &drawing, batch)?;
     }
     Ok(surface)
 }
 
-/// Draws a batch of which every vertex is recorded.
-pub fn record(
-    gpu: &Gpu,
-    drawing: &Drawing<'_>,
-    target: &OffscreenTarget,
-    pipelines: &Pipelines,
-    view: &View,
-    batch: Batch<'_>,
-) -> Result<()> {
-    // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-    gpu.device.submit(|cmd| unsafe {
-        let (surface, device) = (drawing.surface(), gpu.device.raw());
-        surface.cmd_prepare(device, cmd, std::slice::from_ref(view))?;
-        target.begin(cmd, [0.0; 4]);
-        let drawn = drawing.cmd_draw(cmd, pipelines, [batch]);
-        target.end(cmd);
-        surface.cmd_read_back(device, cmd);
-        drawn
-    })?;
-    let overflows = drawing.counters()?.overflows;
-    if overflows > 0 {
-        return Err(Error::Refused(format!(
-            "{overflows} patches found no room in the scratch ring; use --slots host, or a larger --ring-bytes"
-        )));
-    }
-    drawing.surface().arrival([batch])?.check()
-}
-
-/// Draws a batch and returns what was captured, patch by patch.
-fn capture_batch(
-    gpu: &Gpu,
-    drawing: &Drawing<'_>,
-    target: &OffscreenTarget,
-    pipelines: &Pipelines,
-    batch: Batch<'_>,
-) -> Result<Vec<abi::Captured>> {
-    record(gpu, drawing, target, pipelines, &Drawing::nowhere(), batch)?;
-    let surface = drawing.surface();
-    let expected = surface.arrival([batch])?.vertices;
-    Ok(once_each(surface.captured()?, expected))
-}
-
-/// The captured vertices by patch, v and u, each once: the evaluating shader may run more than once a vertex.
-fn once_each(captured: &[abi::Captured], expected: u64) -> Vec<abi::Captured> {
-    let mut vertices = captured.to_vec();
-    let key = |vertex: &abi::Captured| {
-        (
-            vertex.patch_number,
-            vertex.uv[1].to_bits(),
-            vertex.uv[0].to_bits(),
-        )
-    };
-    vertices.sort_unstable_by_key(key);
-    vertices.dedup_by_key(|vertex| key(vertex));
-    if vertices.len() as u64 != expected {
+/// The captured vertices by patch, v and u, each once.
+fn once_each(drawing: &Drawing<'_>, batch: Batch<'_>) -> Result<Vec<abi::Captured>> {
+    let expected = batch.vertices();
+    let (vertices, _) = drawing.captured(expected)?;
+    if vertices.len() != expected as usize {
         tracing::warn!(
             "the device made {} vertices where {expected} were expected",
             vertices.len()
         );
     }
-    vertices
+    Ok(vertices)
 }
 
 /// Adds the points and triangles of captured patches.
@@ -144,7 +102,7 @@ fn add_patches(
     drawing: &Drawing<'_>,
     batch: Batch<'_>,
 ) -> Result<()> {
-    let prepared = drawing.surface().prepared();
+    let prepared = drawing.prepared();
     let pass = &prepared.passes[batch.pass()];
     let placement = model.placement();
     for vertices in captured.chunk_by(|a, b| a.patch_number == b.patch_number) {

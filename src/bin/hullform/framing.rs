@@ -2,14 +2,13 @@
 
 use glam::Vec3;
 use hullform::gpu::{Cut, Fill, Pipelines, Slots, SurfaceOptions, View};
-use hullform::host::OffscreenTarget;
+use hullform::host::{Area, Bench, Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{DepthTags, Displacement, Prepared};
 use hullform::{Result, abi};
 
 use crate::camera::{self, Camera};
-use crate::capture::record;
-use crate::drawing::Drawing;
+use crate::drawing::{self, Drawing};
 use crate::gpu::Gpu;
 use crate::options::{Cutting, Points};
 
@@ -31,6 +30,10 @@ const ENOUGH: f32 = 4.0;
 pub struct Subject<'a> {
     /// The device.
     pub gpu: &'a Gpu,
+    /// Where it will be drawn.
+    pub bench: &'a Bench,
+    /// As what: framing it builds no pipelines of its own then.
+    pub fill: Fill,
     /// The model.
     pub model: &'a Model,
     /// What a method made of it.
@@ -45,16 +48,22 @@ pub struct Subject<'a> {
     pub points: Points,
 }
 
+/// What is seen of it.
+pub struct Framed {
+    /// From where.
+    pub view: camera::View,
+    /// The depth tags that the cutting asks for there.
+    pub tags: Option<DepthTags>,
+    /// The part of the picture in which it is; the rest is empty.
+    pub area: Area,
+}
+
 impl Subject<'_> {
-    /// What `camera` sees in a picture of `size` pixels, and the depth tags that the cutting asks for there.
+    /// What `camera` sees in a picture of `size` pixels.
     ///
     /// The vertices come from the device, undrawn, by the very shaders that will draw them: so displacement, spacing and back-end are what
     /// they will be.
-    pub fn framed(
-        &self,
-        camera: Camera,
-        size: [f32; 2],
-    ) -> Result<(camera::View, Option<DepthTags>)> {
+    pub fn framed(&self, camera: Camera, size: [u32; 2]) -> Result<Framed> {
         let Cutting {
             cut,
             backend,
@@ -71,46 +80,61 @@ impl Subject<'_> {
             greatest_level: cut.level,
             ..Default::default()
         };
-        let mut drawing = Drawing::of(self.gpu, self.model, self.prepared.clone(), options)?;
-        drawing.upload(self.points)?;
-        // Nothing is rasterised, but draws need a render pass.
-        let target = OffscreenTarget::new(&self.gpu.device, 1, 1, 1)?;
-        let pipelines = drawing.pipelines(&target, cut.spacing, Fill::Discard)?;
-        self.look(&mut drawing, &target, &pipelines, camera, size)
+        let prepared = self.prepared.clone();
+        let (gpu, bench) = (self.gpu, self.bench);
+        let mut drawing = Drawing::new(gpu, bench, self.model, prepared, options, self.points)?;
+        let style = Style::new(options, cut.spacing, self.fill);
+        let pipelines = bench.pipelines(self.prepared, style)?;
+        self.look(&mut drawing, &pipelines, camera, size)
     }
 
     fn look(
         &self,
         drawing: &mut Drawing<'_>,
-        target: &OffscreenTarget,
         pipelines: &Pipelines,
         camera: Camera,
-        size: [f32; 2],
-    ) -> Result<(camera::View, Option<DepthTags>)> {
+        [width, height]: [u32; 2],
+    ) -> Result<Framed> {
+        let size = [width, height].map(|side| side as f32);
         let mut frame = |cut: Cut, tags: Option<&DepthTags>| {
             let mut positions = Vec::new();
-            for batch in drawing.draw_list(cut, tags)?.batches() {
-                record(self.gpu, drawing, target, pipelines, &self.view(), batch)?;
+            drawing.tags = tags.cloned();
+            for batch in drawing.draw_list(cut)?.batches() {
+                drawing.draw(&[Shot {
+                    pipelines,
+                    view: self.view(),
+                    batches: vec![batch],
+                }])?;
+                drawing.check([batch])?;
                 let captured = drawing.surface().captured()?.iter();
                 positions.extend(captured.map(|vertex| Vec3::from(vertex.position)));
             }
             let view = camera.frame(&positions, size[0] / size[1]);
-            let tags = drawing.tags(self.model, self.cutting, &view, size)?;
-            Ok((view, tags))
+            let tags = drawing.tags_for(self.model, self.cutting, &view, size)?;
+            let area = view.area(&positions, [width, height]);
+            Ok(Framed { view, tags, area })
         };
-        let (view, tags) = frame(self.coarse(), None)?;
-        if tags.is_none() || self.displacement.height == 0.0 {
-            return Ok((view, tags));
+        let mut framed = frame(self.coarse(), None)?;
+        if self.displacement.height != 0.0 {
+            if framed.tags.is_some() {
+                // With fewer vertices fewer bumps are met.
+                framed.view = frame(self.cutting.cut, framed.tags.as_ref())?.view;
+            }
+            // A bump that was not met may be anywhere.
+            framed.area = Area {
+                x: 0,
+                y: 0,
+                width,
+                height,
+            };
         }
-        // With fewer vertices fewer bumps are met.
-        let (view, _) = frame(self.cutting.cut, tags.as_ref())?;
-        Ok((view, tags))
+        Ok(framed)
     }
 
     fn view(&self) -> View {
         View {
             displacement: self.displacement,
-            ..Drawing::nowhere()
+            ..drawing::nowhere()
         }
     }
 

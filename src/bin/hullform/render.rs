@@ -1,17 +1,17 @@
 //! `hullform render`: a picture of a model.
 
 use crate::camera::{Camera, View};
-use crate::drawing::{Drawing, OwnPipelines};
-use crate::framing::Subject;
+use crate::drawing::{self, Drawing};
+use crate::framing::{Framed, Subject};
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
-use hullform::host::{OffscreenTarget, StatisticsQuery};
+use hullform::host::{Area, Bench, OffscreenTarget, Shot, Style};
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Displacement, Prepared};
+use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -85,15 +85,12 @@ struct Scene<'a> {
     load_seconds: f64,
 }
 
-/// What is seen of a scene, and the depth tags that follow from that.
-type Seen = (View, Option<DepthTags>);
-
 /// Where a scene is seen from.
 enum Sight {
     /// From where the camera sees all of the surface, in a picture of this size.
     Framed(Camera, Size),
-    /// From a given place; depth tags are not asked for.
-    Given(View),
+    /// From a given place, in this part of the picture; depth tags are not asked for.
+    Given(View, Area),
 }
 
 /// Draws the model and writes picture and statistics.
@@ -139,7 +136,7 @@ fn draw_picture(
             remedy: "choose another device or leave it out".into(),
         });
     }
-    let (target, factor) = target(gpu, width, height)?;
+    let (mut bench, factor) = bench(gpu, width, height)?;
     let scene = Scene {
         model,
         chosen: arguments.cut.chosen(model)?,
@@ -149,19 +146,17 @@ fn draw_picture(
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
         ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
+        slots: drawing::slots(global.slots),
         points: global.points,
         load_seconds,
     };
-    let stats = progress::during("drawing", |_| draw(gpu, &target, &scene))?;
-    Ok((
-        picture::compose(&target.read_pixels(), width, height, factor),
-        stats,
-    ))
+    let stats = progress::during("drawing", |_| draw(gpu, &mut bench, factor, &scene))?;
+    let (pixels, area) = (bench.target().read_pixels(), bench.target().area());
+    Ok((picture::compose(pixels, area, width, height, factor), stats))
 }
 
-/// A target for a picture, and the factor by which it is larger.
-pub fn target(gpu: &Gpu, width: u32, height: u32) -> Result<(OffscreenTarget, u32)> {
+/// A bench for a picture, and the factor by which its target is larger.
+pub fn bench(gpu: &Gpu, width: u32, height: u32) -> Result<(Bench, u32)> {
     let limits = gpu.device.limits();
     let widest = limits
         .max_framebuffer_width
@@ -171,34 +166,42 @@ pub fn target(gpu: &Gpu, width: u32, height: u32) -> Result<(OffscreenTarget, u3
     } else {
         1
     };
-    let target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
-    Ok((target, factor))
+    let mut target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
+    // Until it is known where something is to be seen.
+    target.confine(Area {
+        x: 0,
+        y: 0,
+        width: 1,
+        height: 1,
+    });
+    Ok((Bench::new(target)?, factor))
 }
 
-/// Draws a model lit, by a method, as seen in `view`.
+/// Draws a model lit, by a method, as seen in `view`: in an area of the picture, whose pixels are drawn as squares of `factor`.
+#[allow(clippy::too_many_arguments)]
 pub fn draw_lit(
     gpu: &Gpu,
-    target: &OffscreenTarget,
+    (bench, factor): (&mut Bench, u32),
     model: &Model,
     chosen: Chosen,
     cutting: Cutting,
-    view: View,
+    (view, area): (View, Area),
     global: &Global,
 ) -> Result<()> {
     let scene = Scene {
         model,
         chosen,
         cutting,
-        sight: Sight::Given(view),
+        sight: Sight::Given(view, area),
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
         ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
+        slots: drawing::slots(global.slots),
         points: global.points,
         load_seconds: 0.0,
     };
-    draw(gpu, target, &scene).map(drop)
+    draw(gpu, bench, factor, &scene).map(drop)
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
@@ -209,31 +212,48 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
     }
 }
 
-/// Draws `scene` into `target`, copies the picture to the host, and returns the statistics.
-fn draw(gpu: &Gpu, target: &OffscreenTarget, scene: &Scene<'_>) -> Result<Value> {
+/// Draws `scene` into the target of `bench`, copies the picture to the host, and returns the statistics.
+fn draw(gpu: &Gpu, bench: &mut Bench, factor: u32, scene: &Scene<'_>) -> Result<Value> {
     let started = Instant::now();
-    let prepared = Drawing::prepare(scene.model, scene.chosen)?;
+    let prepared = drawing::prepare(scene.model, scene.chosen)?;
     let plan_seconds = started.elapsed().as_secs_f64();
-    let seen = scene.seen(gpu, &prepared)?;
-    let draw =
-        |prepared, slots| draw_with(gpu, target, scene, prepared, plan_seconds, &seen, slots);
+    let seen = scene.seen(gpu, bench, &prepared)?;
+    let Area {
+        x,
+        y,
+        width,
+        height,
+    } = seen.area;
+    bench.target_mut().confine(Area {
+        x: x * factor,
+        y: y * factor,
+        width: width * factor,
+        height: height * factor,
+    });
+    let draw = |prepared, slots| draw_with(gpu, bench, scene, prepared, plan_seconds, &seen, slots);
     let stats = draw(prepared, scene.slots)?;
     if stats["ring"]["overflows"] == 0 {
         return Ok(stats);
     }
     // Control shaders ran more often than once a patch and took more than their share. Slots from the host do not depend on that.
     tracing::warn!("the scratch ring overflowed; drawing again with slots from the host");
-    draw(Drawing::prepare(scene.model, scene.chosen)?, Slots::Host)
+    draw(drawing::prepare(scene.model, scene.chosen)?, Slots::Host)
 }
 
 impl Scene<'_> {
     /// What is seen of it, and the depth tags that the cutting asks for.
-    fn seen(&self, gpu: &Gpu, prepared: &Prepared) -> Result<Seen> {
+    fn seen(&self, gpu: &Gpu, bench: &Bench, prepared: &Prepared) -> Result<Framed> {
         match self.sight {
-            Sight::Given(view) => Ok((view, None)),
+            Sight::Given(view, area) => Ok(Framed {
+                view,
+                tags: None,
+                area,
+            }),
             Sight::Framed(camera, Size { width, height }) => {
                 let subject = Subject {
                     gpu,
+                    bench,
+                    fill: self.solid(),
                     model: self.model,
                     prepared,
                     cutting: self.cutting,
@@ -241,19 +261,24 @@ impl Scene<'_> {
                     ring_bytes: self.ring_bytes,
                     points: self.points,
                 };
-                subject.framed(camera, [width as f32, height as f32])
+                subject.framed(camera, [width, height])
             }
         }
+    }
+
+    /// What becomes of its triangles.
+    fn solid(&self) -> Fill {
+        Fill::Solid(self.shading.into())
     }
 }
 
 fn draw_with(
     gpu: &Gpu,
-    target: &OffscreenTarget,
+    bench: &Bench,
     scene: &Scene<'_>,
     prepared: Prepared,
     plan_seconds: f64,
-    (view, tags): &Seen,
+    Framed { view, tags, .. }: &Framed,
     slots: Slots,
 ) -> Result<Value> {
     let Cutting {
@@ -272,66 +297,33 @@ fn draw_with(
         rounds: if scene.wireframe { 2 } else { 1 },
         ..Default::default()
     };
-    let mut drawing = Drawing::of(gpu, scene.model, prepared, options)?;
-    drawing.plan_seconds = plan_seconds;
-    drawing.upload(scene.points)?;
-    let list = drawing.draw_list(cut, tags.as_ref())?;
+    let mut drawing = Drawing::new(gpu, bench, scene.model, prepared, options, scene.points)?;
+    drawing.tags = tags.clone();
+    let list = drawing.draw_list(cut)?;
     let started = Instant::now();
-    let solid = Fill::Solid(scene.shading.into());
-    let mut pipelines = vec![drawing.pipelines(target, cut.spacing, solid)?];
-    if scene.wireframe {
-        pipelines.push(drawing.pipelines(target, cut.spacing, Fill::Lines)?);
-    }
-    let counted = draw_frame(gpu, target, scene, view, &drawing, &pipelines, &list)?;
-    let seconds = started.elapsed().as_secs_f64();
+    let mut fills = vec![scene.solid()];
+    fills.extend(scene.wireframe.then_some(Fill::Lines));
+    let pipelines = fills.into_iter().map(|fill| {
+        let style = Style::new(options, cut.spacing, fill);
+        bench.pipelines(drawing.prepared(), style)
+    });
+    let pipelines = pipelines.collect::<Result<Vec<_>>>()?;
+    let shots = (0..).zip(&pipelines).map(|(round, pipelines)| {
+        Ok(Shot {
+            pipelines,
+            view: library_view(view, scene),
+            batches: list.round(round)?.collect(),
+        })
+    });
+    let counted = drawing.draw(&shots.collect::<Result<Vec<_>>>()?)?;
+    let first_frame = started.elapsed().as_secs_f64();
     // Patches without room in the ring are known to be missing: see `draw`.
-    if drawing.counters()?.overflows == 0 {
+    if drawing.surface().counters()?.overflows == 0 {
         let drawn = (0..pipelines.len()).flat_map(|_| list.batches());
         drawing.surface().arrival(drawn)?.check()?;
     }
+    let seconds = [plan_seconds, first_frame];
     statistics(gpu, scene, &drawing, &list, &counted, seconds)
-}
-
-/// Draws one frame: the surface, and with a second set of pipelines its lines. Returns the pipeline statistics of the surface.
-fn draw_frame(
-    gpu: &Gpu,
-    target: &OffscreenTarget,
-    scene: &Scene<'_>,
-    view: &View,
-    drawing: &Drawing<'_>,
-    pipelines: &[OwnPipelines<'_>],
-    list: &DrawList,
-) -> Result<Option<[u64; 3]>> {
-    let statistics = gpu.device.info().support.optional.pipeline_statistics_query;
-    let query = statistics
-        .then(|| StatisticsQuery::new(&gpu.device))
-        .transpose()?;
-    let device = gpu.device.raw();
-    // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-    gpu.device.submit(|cmd| unsafe {
-        let seen = library_view(view, scene);
-        drawing.surface().cmd_prepare(device, cmd, &[seen])?;
-        if let Some(query) = &query {
-            query.cmd_reset(cmd);
-        }
-        target.begin(cmd, CLEAR);
-        if let Some(query) = &query {
-            query.cmd_begin(cmd);
-        }
-        let mut drawn = drawing.cmd_draw(cmd, &pipelines[0], list.batches());
-        if let Some(query) = &query {
-            query.cmd_end(cmd);
-        }
-        if let Some(lines) = pipelines.get(1) {
-            let again = list.round(1)?;
-            drawn = drawn.and_then(|()| drawing.cmd_draw(cmd, lines, again));
-        }
-        target.end(cmd);
-        drawing.surface().cmd_read_back(device, cmd);
-        target.cmd_copy_to_host(cmd);
-        drawn
-    })?;
-    query.map(|query| query.read()).transpose()
 }
 
 /// What `--stats` writes.
@@ -341,28 +333,22 @@ fn statistics(
     drawing: &Drawing<'_>,
     list: &DrawList,
     counted: &Option<[u64; 3]>,
-    first_frame: f64,
+    [plan_seconds, first_frame]: [f64; 2],
 ) -> Result<Value> {
     let info = gpu.device.info();
-    let plans = drawing
-        .surface()
-        .prepared()
-        .plans
-        .clone()
-        .unwrap_or_default();
+    let plans = drawing.prepared().plans.clone().unwrap_or_default();
     let patches: usize = drawing
-        .surface()
         .prepared()
         .passes
         .iter()
         .map(|pass| pass.patches.len())
         .sum();
     let ring_batches = list.batches().filter(|batch| batch.points() > 0).count();
-    let counters = drawing.counters()?;
+    let counters = drawing.surface().counters()?;
     Ok(json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": drawing.surface().prepared().method,
+        "method": drawing.prepared().method,
         "level": scene.cutting.cut.level,
         "backend": scene.cutting.backend.name(),
         "residence": scene.cutting.residence.name(),
@@ -384,7 +370,7 @@ fn statistics(
         },
         "seconds": {
             "load": scene.load_seconds,
-            "plan": drawing.plan_seconds,
+            "plan": plan_seconds,
             "upload": drawing.upload_seconds,
             "first_frame": first_frame,
         },

@@ -1,6 +1,6 @@
 //! `hullform verify`: the conformance suite.
 
-use crate::drawing::Drawing;
+use crate::drawing;
 use crate::options::{self, Global, Json};
 use crate::output::{self, Contents, Pending, junit};
 use crate::{interrupt, model, print, print_json};
@@ -133,7 +133,7 @@ fn be_worker(
         validation: global.validation,
         workarounds: !global.no_workarounds,
         ring_bytes: global.ring_bytes,
-        slots: Drawing::slots(global.slots),
+        slots: drawing::slots(global.slots),
         seed: arguments.seed,
         fault: arguments.fault.clone(),
     };

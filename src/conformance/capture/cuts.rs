@@ -1,23 +1,11 @@
 //! Cuts and what comes of them: the words of cases, and predictions.
 
-use crate::abi::Captured;
 use crate::error::Result;
 use crate::gpu::Cut;
 use crate::mesh::Model;
 use crate::method::{Prepared, method};
 use crate::plan::PlanOptions;
 use crate::tessellation::Spacing;
-
-/// The order in which captured vertices are told: by patch, v and u.
-pub fn key(vertex: &Captured) -> (u32, u32, u32) {
-    let [u, v] = vertex.uv.map(f32::to_bits);
-    (vertex.patch_number, v, u)
-}
-
-/// Everything about a vertex, for comparisons without tolerance.
-pub fn bits(vertex: &Captured) -> [u32; 9] {
-    bytemuck::cast(*vertex)
-}
 
 /// A cut.
 pub fn cut(level: f32, spacing: Spacing) -> Cut {

@@ -6,16 +6,11 @@ use glam::DVec3;
 
 use super::reference::{Cuts, TessLevels, barely_divided, equal_cuts, segments, vertices};
 use super::rules::{TOLERANCE, UNIT, levels, random_tables, uniform};
-use super::shot::{Shot, edge, point, shoot};
+use super::shot::{Shot, edge, most, point, shoot};
 use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Check, Context, Finding};
 use crate::error::{Error, Result};
-
-/// The device's greatest level.
-pub fn most(context: &Context) -> Result<f32> {
-    Ok(context.device()?.limits().max_tessellation_generation_level as f32)
-}
 
 /// The cuts of levels as the device makes them, on the first edge of patches of one level each; equal ones as they are defined.
 fn cuts(context: &Context, modes: Modes, levels: &[f32]) -> Result<HashMap<u32, Cuts>> {

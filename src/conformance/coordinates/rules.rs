@@ -2,9 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::construction::most;
 use super::reference::{TessLevels, segments};
-use super::shot::{Bits, SIDE, Shot, edge, edges, level_of_edge, shoot};
+use super::shot::{Bits, SIDE, Shot, edge, edges, level_of_edge, most, shoot};
 use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::raw::Raster;
 use crate::conformance::{Check, Context, Finding};

@@ -150,3 +150,8 @@ pub fn level_of_edge(domain: Domain, levels: &TessLevels, edge: usize) -> f32 {
         _ => levels.outer[edge],
     }
 }
+
+/// The device's greatest level.
+pub fn most(context: &Context) -> Result<f32> {
+    Ok(context.device()?.limits().max_tessellation_generation_level as f32)
+}

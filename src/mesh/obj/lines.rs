@@ -118,6 +118,78 @@ fn is_statement(line: &[u8]) -> bool {
     READ.iter().any(|keyword| keyword.as_bytes() == first)
 }
 
+/// A finite number.
+pub(super) fn number(line: Line, what: &str, word: &str) -> Result<f64> {
+    value(line, what, word)?.ok_or_else(|| not_finite(line, what, word))
+}
+
+/// A number; None where the word says that none could be computed: `nan`, `inf`, or what Windows writes for these.
+pub(super) fn value(line: Line, what: &str, word: &str) -> Result<Option<f64>> {
+    match word.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ if is_name_of_no_number(word) => Ok(None),
+        Ok(_) => Err(not_finite(line, what, word)),
+        Err(_) => Err(line.error(
+            format!("the {what} {} is not a number", quoted(word)),
+            "write a decimal number such as -1.5 or 2e-3",
+        )),
+    }
+}
+
+fn not_finite(line: Line, what: &str, word: &str) -> Error {
+    line.error(
+        format!("the {what} {} is not finite", quoted(word)),
+        "replace NaN, infinite and too large values by numbers",
+    )
+}
+
+/// Such as `NaN`, `-inf`, `-nan(ind)`, `1.#QNAN0`; a number that is too large to be one is none of these.
+fn is_name_of_no_number(word: &str) -> bool {
+    let plain = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    matches!(plain.as_str(), "nan" | "inf" | "infinity")
+        || plain.starts_with("nan(") && plain.ends_with(')')
+        || plain.starts_with("1.#")
+}
+
+/// The number, counted from 1, that `word` names when `count` of them have been given so far.
+pub(super) fn index(line: Line, what: &str, word: &str, count: usize) -> Result<usize> {
+    let given = word
+        .parse::<isize>()
+        .map_err(|_| not_an_index(line, what, word))?;
+    if given == 0 {
+        return Err(line.error(
+            format!("the face names {what} 0"),
+            format!("{what} numbers of faces count from 1"),
+        ));
+    }
+    if given > 0 {
+        return Ok(given.unsigned_abs());
+    }
+    let back = given.unsigned_abs();
+    if back > count {
+        return Err(line.error(
+            format!("the face names {what} {given}, but only {count} stand before it"),
+            "negative numbers count backwards from the face's own line",
+        ));
+    }
+    Ok(count - back + 1)
+}
+
+pub(super) fn not_an_index(line: Line, what: &str, word: &str) -> Error {
+    line.error(
+        format!("the {what} {} is not a whole number", quoted(word)),
+        "write the corner of a face as v, v/vt, v//vn or v/vt/vn",
+    )
+}
+
+/// `word` in quotes, shortened when it would fill the screen.
+pub(super) fn quoted(word: &str) -> String {
+    match word.char_indices().nth(40) {
+        Some((end, _)) => format!("{:?}...", &word[..end]),
+        None => format!("{word:?}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

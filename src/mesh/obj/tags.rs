@@ -1,7 +1,6 @@
 //! The `t` lines: subdivision tags.
 
-use super::lines::Line;
-use super::scan::{number, quoted};
+use super::lines::{Line, number, quoted};
 use crate::error::{Place, Result};
 use crate::mesh::{
     BoundaryInterpolation, Corner, Crease, CreaseMethod, SchemeOptions, TriangleSubdivision,

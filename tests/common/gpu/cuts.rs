@@ -7,17 +7,6 @@ use hullform::method::{Prepared, method};
 use hullform::plan::PlanOptions;
 use hullform::tessellation::Spacing;
 
-/// The order in which captured vertices are told: by patch, v and u.
-pub fn key(vertex: &Captured) -> (u32, u32, u32) {
-    let [u, v] = vertex.uv.map(f32::to_bits);
-    (vertex.patch_number, v, u)
-}
-
-/// Everything about a vertex, for comparisons without tolerance.
-pub fn bits(vertex: &Captured) -> [u32; 9] {
-    bytemuck::cast(*vertex)
-}
-
 /// A cut.
 pub fn cut(level: f32, spacing: Spacing) -> Cut {
     Cut { level, spacing }

@@ -1,18 +1,14 @@
-//! What follows from positions: points, and control points in a cache.
+//! Positions that an engine moves itself.
 
 use ash::vk;
-use hullform::Result;
-use hullform::gpu::{CachePipelines, DrawList, PointPipeline};
 
 use super::Loaded;
 
 impl Loaded<'_> {
     /// Moves the control vertices on the device, as an engine that skins its mesh there would, and computes what depends on them.
     pub fn move_on_device(&self, positions: &[[f32; 3]]) {
-        let device = self.gpu.device.raw();
-        let layout = self.gpu.layout();
-        // SAFETY: device and layout are live.
-        let pipeline = unsafe { PointPipeline::new(device, layout, vk::PipelineCache::null()) };
+        let (device, layout) = (self.gpu.device.raw(), self.gpu.layout());
+        let pipeline = self.point_pipeline();
         let pipeline = pipeline.expect("the shipped module makes a pipeline");
         let barrier = vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
@@ -33,37 +29,5 @@ impl Loaded<'_> {
             Ok(())
         });
         moved.expect("it is executed");
-        // SAFETY: the submission has been waited for.
-        unsafe { pipeline.destroy(device) };
-    }
-
-    /// Replaces the positions on the host and brings them to the device.
-    pub fn replace_positions(&mut self, positions: &[[f32; 3]]) {
-        let device = &self.gpu.device;
-        let surface = self.surface.as_mut().expect("there from load to drop");
-        let written = surface.write_positions(positions);
-        written.expect("there is one a control vertex");
-        let uploaded = device.submit(|cmd| {
-            // SAFETY: recording on the device that made the surface, outside of a render pass.
-            unsafe { surface.cmd_upload(device.raw(), cmd) };
-            Ok(())
-        });
-        uploaded.expect("it is executed");
-    }
-
-    /// Fills the cache with what a list needs; how many control points are computed.
-    pub fn cache(&mut self, list: &DrawList) -> Result<u32> {
-        let (device, layout) = (&self.gpu.device, self.gpu.layout());
-        let cache = vk::PipelineCache::null();
-        let surface = self.surface.as_mut().expect("there from load to drop");
-        // SAFETY: all of one live device; the submission is waited for before the pipelines go.
-        unsafe {
-            let prepared = surface.prepared();
-            let pipelines = CachePipelines::new(device.raw(), layout, cache, prepared)?;
-            let cached =
-                device.submit(|cmd| surface.cmd_cache(device.raw(), cmd, layout, &pipelines, list));
-            pipelines.destroy(device.raw());
-            cached
-        }
     }
 }

@@ -13,7 +13,7 @@ use hullform::method::{METHODS, Method, Prepared, Reproduces, method};
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 
-use crate::drawing::Drawing;
+use crate::drawing;
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Global, Json};
 use crate::output::{self, Contents};
@@ -139,6 +139,7 @@ fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Re
     let methods = methods(arguments, &model)?;
     let options = arguments.tables.options(&methods)?;
     let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
+    let bench = drawing::blind(gpu)?;
     let mut subjects = Vec::new();
     for &method in &methods {
         let chosen = Chosen {
@@ -154,7 +155,7 @@ fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Re
         });
         for (backend, own) in ways {
             let residence = Residence::from(own);
-            let prepared = Drawing::prepare(&model, chosen).and_then(|prepared| {
+            let prepared = drawing::prepare(&model, chosen).and_then(|prepared| {
                 backend.check(&prepared, residence, greatest)?;
                 Ok(prepared)
             });
@@ -169,7 +170,7 @@ fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Re
                 Ok(prepared) => {
                     let drawn = (method.name, backend, residence);
                     subjects.push(Subject::new(
-                        gpu, path, &model, prepared, drawn, arguments, global,
+                        gpu, &bench, path, &model, prepared, drawn, arguments, global,
                     )?);
                 }
                 // What was not asked for by name may be refused, or left to another backend.

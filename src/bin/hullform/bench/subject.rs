@@ -1,19 +1,19 @@
 //! A model on the device by a method, drawn again and again at some levels.
 
 use std::path::Path;
+use std::rc::Rc;
 
-use hullform::gpu::{Backend, Cut, DrawList, Fill, Residence, SurfaceOptions};
-use hullform::host::{OffscreenTarget, StatisticsQuery, TimestampQuery};
+use hullform::gpu::{Backend, Cut, DrawList, Fill, Pipelines, Residence, SurfaceOptions};
+use hullform::host::{Bench, Owned, Shot, Style, TimestampQuery};
 use hullform::mesh::Model;
 use hullform::method::Prepared;
 use hullform::{Error, Result};
 
 use super::Arguments;
 use super::row::{Row, Work};
-use crate::drawing::{Drawing, OwnPipelines};
+use crate::drawing::{self, Drawing};
 use crate::gpu::Gpu;
 use crate::options::Global;
-use crate::render;
 
 /// What is drawn at several levels, each with its times. Triangles are made and thrown away: what they cover costs all methods the same.
 pub struct Subject<'a> {
@@ -27,11 +27,10 @@ pub struct Subject<'a> {
     ring_bytes: u64,
     device_bytes: u64,
     drawing: Drawing<'a>,
-    pipelines: OwnPipelines<'a>,
-    target: OffscreenTarget,
+    pipelines: Rc<Owned<Pipelines>>,
     clock: Option<TimestampQuery>,
-    /// Tells whether frames are whole, where the device counts. Elsewhere the shaders do, and all methods bear an atomic operation a vertex.
-    statistics: Option<StatisticsQuery>,
+    /// Whether the device tells if frames are whole. Elsewhere the shaders do, and all methods bear an atomic operation a vertex.
+    device_counts: bool,
     levels: Vec<Level>,
 }
 
@@ -45,8 +44,10 @@ struct Level {
 
 impl<'a> Subject<'a> {
     /// Brings a model to the device, as a method prepared it.
+    #[allow(clippy::too_many_arguments)]
     pub fn new(
         gpu: &'a Gpu,
+        bench: &'a Bench,
         path: &Path,
         model: &Model,
         prepared: Prepared,
@@ -62,18 +63,16 @@ impl<'a> Subject<'a> {
             residence,
             count_vertices: !device_counts,
             ring_bytes: global.ring_bytes,
-            slots: Drawing::slots(global.slots),
+            slots: drawing::slots(global.slots),
             greatest_level: greatest,
             rounds: arguments.passes,
             ..SurfaceOptions::default()
         };
         let before = gpu.device.allocated_bytes();
-        let mut drawing = Drawing::of(gpu, model, prepared, options)?;
-        drawing.upload(global.points)?;
+        let drawing = Drawing::new(gpu, bench, model, prepared, options, global.points)?;
         let device_bytes = gpu.device.allocated_bytes() - before;
-        // Nothing is rasterised, but draws need a render pass.
-        let target = OffscreenTarget::new(&gpu.device, 1, 1, 1)?;
         let spacing = arguments.spacing.into();
+        let style = Style::new(options, spacing, Fill::Discard);
         let list = |&level: &f32| {
             let cut = Cut { level, spacing };
             Ok(Level {
@@ -84,7 +83,6 @@ impl<'a> Subject<'a> {
             })
         };
         let levels = arguments.levels.iter().map(list).collect::<Result<_>>()?;
-        let statistics = device_counts.then(|| StatisticsQuery::new(&gpu.device));
         Ok(Subject {
             gpu,
             model: model_name(path),
@@ -98,11 +96,10 @@ impl<'a> Subject<'a> {
                 Residence::Cache => 0,
             },
             device_bytes,
-            pipelines: drawing.pipelines(&target, spacing, Fill::Discard)?,
+            pipelines: bench.pipelines(drawing.prepared(), style)?,
             drawing,
-            target,
             clock: TimestampQuery::new(&gpu.device)?,
-            statistics: statistics.transpose()?,
+            device_counts,
             levels,
         })
     }
@@ -112,9 +109,9 @@ impl<'a> Subject<'a> {
         for number in 0..self.levels.len() {
             self.drawing.bring(&self.levels[number].list)?;
             let before = cpu_seconds();
-            let cached = self.submit(number)?;
+            let (cached, counted) = self.submit(number)?;
             let after = cpu_seconds();
-            let work = self.work(number, cached)?;
+            let work = self.work(number, cached, counted)?;
             let level = &mut self.levels[number];
             if level.work.replace(work).is_none() {
                 continue;
@@ -128,71 +125,59 @@ impl<'a> Subject<'a> {
         Ok(())
     }
 
-    /// Draws a frame; how many control points it brought into the cache.
-    fn submit(&mut self, number: usize) -> Result<u32> {
+    /// Draws a frame; how many control points it brought into the cache, and what the device counted.
+    fn submit(&mut self, number: usize) -> Result<(u32, Option<[u64; 3]>)> {
         let list = &self.levels[number].list;
-        let query = self.statistics.as_ref();
-        let device = self.gpu.device.raw();
         if !self.is_static {
-            self.drawing.positions_changed();
+            self.drawing.surface_mut().positions_changed();
         }
+        let clock = self.clock.as_ref();
         let begin = |cmd| {
-            if let Some(clock) = &self.clock {
+            if let Some(clock) = clock {
                 // SAFETY: recording on the query's device, outside of a render pass.
                 unsafe { clock.cmd_begin(cmd) };
             }
         };
+        let end = |cmd| {
+            if let Some(clock) = clock {
+                // SAFETY: as above, after the beginning.
+                unsafe { clock.cmd_end(cmd) };
+            }
+        };
         // In a submission of its own: where a dispatch stands before a query of pipeline statistics in a command buffer, llvmpipe crashes (Mesa
         // 22.3.6).
-        let mut cached = 0;
         let fills = !self.drawing.surface().is_cached(list);
-        if fills {
-            // SAFETY: recording on the device that made everything, outside of a render pass.
-            cached = self.gpu.device.submit(|cmd| unsafe {
-                begin(cmd);
-                self.drawing.cmd_cache(cmd, list)
-            })?;
+        let cached = match fills {
+            true => self.drawing.cache_after(list, begin)?,
+            false => 0,
+        };
+        let mut batches = Vec::new();
+        for round in 0..self.passes {
+            batches.extend(list.round(round)?);
         }
-        // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-        self.gpu.device.submit(|cmd| unsafe {
+        let shot = Shot {
+            pipelines: &self.pipelines,
+            view: drawing::nowhere(),
+            batches,
+        };
+        let begin = |cmd| {
             if !fills {
                 begin(cmd);
             }
-            let surface = self.drawing.surface();
-            surface.cmd_prepare(device, cmd, &[Drawing::nowhere()])?;
-            if let Some(query) = query {
-                query.cmd_reset(cmd);
-            }
-            self.target.begin(cmd, render::CLEAR);
-            if let Some(query) = query {
-                query.cmd_begin(cmd);
-            }
-            let mut drawn = Ok(());
-            for round in 0..self.passes {
-                let batches = list.round(round)?;
-                drawn = drawn.and_then(|()| self.drawing.cmd_draw(cmd, &self.pipelines, batches));
-            }
-            if let Some(query) = query {
-                query.cmd_end(cmd);
-            }
-            self.target.end(cmd);
-            surface.cmd_read_back(device, cmd);
-            if let Some(clock) = &self.clock {
-                clock.cmd_end(cmd);
-            }
-            drawn.map(|()| cached)
-        })
+        };
+        let counted = self.drawing.draw_between(&[shot], begin, end)?;
+        Ok((cached, counted))
     }
 
     /// What the frame just drawn did. One of which something is missing would be a fast one, and is refused.
-    fn work(&self, number: usize, cached: u32) -> Result<Work> {
+    fn work(&self, number: usize, cached: u32, counted: Option<[u64; 3]>) -> Result<Work> {
         let list = &self.levels[number].list;
         let batches = || {
             (0..self.passes)
                 .filter_map(|round| list.round(round).ok())
                 .flatten()
         };
-        let counters = self.drawing.counters()?;
+        let counters = self.drawing.surface().counters()?;
         if counters.overflows > 0 {
             return Err(Error::Refused(format!(
                 "{} patches found no room in the ring; give it more --ring-bytes, or --slots host",
@@ -200,8 +185,8 @@ impl<'a> Subject<'a> {
             )));
         }
         let predicted: u64 = batches().map(|batch| u64::from(batch.vertices())).sum();
-        let evaluations = match &self.statistics {
-            Some(query) => query.read()?[1],
+        let evaluations = match counted.filter(|_| self.device_counts) {
+            Some([_, evaluations, _]) => evaluations,
             None => {
                 self.drawing.surface().arrival(batches())?.check()?;
                 predicted
@@ -212,7 +197,7 @@ impl<'a> Subject<'a> {
             let what = format!("{missing} of {predicted} vertices of a frame");
             return Err(Error::Lost { what });
         }
-        let prepared = self.drawing.surface().prepared();
+        let prepared = self.drawing.prepared();
         let products = |batch: hullform::gpu::Batch<'_>| -> u64 {
             let pass = &prepared.passes[batch.pass()];
             let patches = batch.patches().map(|patch| patch as usize);

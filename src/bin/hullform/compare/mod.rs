@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::Vec3;
+use hullform::host::{Area, OffscreenTarget};
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{METHODS, Method, Prepared, method};
 use hullform::subdivision::LimitSurface;
@@ -269,33 +270,45 @@ fn draw(
     global: &Global,
 ) -> Result<Page> {
     let Size { width, height } = arguments.size;
-    let (target, factor) = render::target(gpu, width, height)?;
+    let (mut bench, factor) = render::bench(gpu, width, height)?;
     let cutting = arguments.steps.cutting();
-    let view = view(model, columns, arguments);
-    let finish = || composed::compose(&target.read_pixels(), width, height, factor);
+    let seen = view(model, columns, arguments);
+    let finish = |target: &OffscreenTarget| {
+        composed::compose(target.read_pixels(), target.area(), width, height, factor)
+    };
     let mut rows = Vec::new();
     for column in columns {
-        render::draw_lit(gpu, &target, model, column.chosen, cutting, view, global)?;
-        let lit = finish();
-        let mut tiles = vec![lit];
+        let chosen = column.chosen;
+        let drawn = (&mut bench, factor);
+        render::draw_lit(gpu, drawn, model, chosen, cutting, seen, global)?;
+        let mut tiles = vec![finish(bench.target())];
         let maps = [&column.errors.positions, &column.errors.normals];
         for (errors, scale) in maps.into_iter().zip(scales) {
-            picture::draw_map(gpu, &target, model, &column.surface, errors, scale, &view)?;
-            tiles.push(finish());
+            picture::draw_map(
+                gpu,
+                bench.target(),
+                model,
+                &column.surface,
+                errors,
+                scale,
+                &seen.0,
+            )?;
+            tiles.push(finish(bench.target()));
         }
         rows.push((column, tiles));
     }
     Ok(picture::lay_out(arguments, &rows, refusals, scales))
 }
 
-/// One view for all, which has all that any method draws in it.
-fn view(model: &Model, columns: &[Column], arguments: &Arguments) -> View {
+/// One view for all, which has all that any method draws in it, and where in the picture that is.
+fn view(model: &Model, columns: &[Column], arguments: &Arguments) -> (View, Area) {
     let points = columns.iter().flat_map(|column| &column.surface.points);
     let points = points.map(|point| picture::local(model, point));
     let Size { width, height } = arguments.size;
     let aspect = width as f32 / height as f32;
     let points: Vec<Vec3> = points.collect();
-    arguments.sight.camera.frame(&points, aspect)
+    let view = arguments.sight.camera.frame(&points, aspect);
+    (view, view.area(&points, [width, height]))
 }
 
 fn report(

@@ -7,6 +7,8 @@ pub fn write(out: &mut dyn Write, width: u32, height: u32, rgba: &[u8]) -> io::R
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    // A quarter of the time of the usual level, for a file that is a little larger.
+    encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let rgb: Vec<u8> = rgba
         .chunks_exact(4)

@@ -1,0 +1,183 @@
+//! A device with a picture to draw into: where surfaces are loaded, drawn, captured and measured by whoever has no engine.
+
+mod loaded;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use ash::vk;
+
+use crate::error::Result;
+use crate::frame::{Backend, Batch, Residence, SurfaceOptions};
+use crate::gpu::{Fill, Layout, PipelineOptions, Pipelines, Target, View};
+use crate::host::{Device, OffscreenTarget, Owned, StatisticsQuery};
+use crate::method::Prepared;
+use crate::tessellation::Spacing;
+
+pub use loaded::{Frame, Loaded, vertex_bits, vertex_key};
+
+/// A device, a target, and what surfaces share there: their layouts, and the pipelines, which take long to build and are built once.
+///
+/// One thread draws and waits, submission by submission.
+pub struct Bench {
+    device: Device,
+    target: OffscreenTarget,
+    layout: Owned<Layout>,
+    pipelines: RefCell<Vec<(Key, Rc<Owned<Pipelines>>)>>,
+    statistics: Option<StatisticsQuery>,
+}
+
+/// The shaders of the passes, and how they are drawn.
+type Key = (Vec<&'static str>, Style);
+
+/// How surfaces are drawn, as far as pipelines go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Who cuts patches into triangles.
+    pub backend: Backend,
+    /// Where control points live.
+    pub residence: Residence,
+    /// The spacing of vertices along edges.
+    pub spacing: Spacing,
+    /// What becomes of the triangles.
+    pub fill: Fill,
+    /// Which of them are left out.
+    pub cull: vk::CullModeFlags,
+    /// How depths are compared.
+    pub compare: vk::CompareOp,
+}
+
+impl Style {
+    /// Both sides of all triangles, the nearer before the farther.
+    pub fn new(options: SurfaceOptions, spacing: Spacing, fill: Fill) -> Style {
+        Style {
+            backend: options.backend,
+            residence: options.residence,
+            spacing,
+            fill,
+            cull: vk::CullModeFlags::NONE,
+            compare: vk::CompareOp::LESS_OR_EQUAL,
+        }
+    }
+}
+
+/// Batches that are drawn with the same pipelines, as seen in the same view.
+#[derive(Clone, Debug)]
+pub struct Shot<'s> {
+    /// The pipelines.
+    pub pipelines: &'s Pipelines,
+    /// The view.
+    pub view: View,
+    /// The batches.
+    pub batches: Vec<Batch<'s>>,
+}
+
+impl Bench {
+    /// What surfaces need that are drawn into a target, on its device.
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    pub fn new(target: OffscreenTarget) -> Result<Bench> {
+        let device = target.device().clone();
+        let counts = device.info().support.optional.pipeline_statistics_query;
+        let statistics = counts.then(|| StatisticsQuery::new(&device)).transpose()?;
+        // SAFETY: the device is live.
+        let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
+        Ok(Bench {
+            target,
+            statistics,
+            // SAFETY: the layout was just made by this device.
+            layout: unsafe { Owned::new(&device, layout) },
+            pipelines: RefCell::default(),
+            device,
+        })
+    }
+
+    /// Its device.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// What it draws into.
+    pub fn target(&self) -> &OffscreenTarget {
+        &self.target
+    }
+
+    /// The same, to be confined.
+    pub fn target_mut(&mut self) -> &mut OffscreenTarget {
+        &mut self.target
+    }
+
+    /// The layouts of all surfaces.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The pipelines for a prepared model, built once and kept.
+    ///
+    /// # Errors
+    /// As [`Pipelines::new`].
+    pub fn pipelines(&self, prepared: &Prepared, style: Style) -> Result<Rc<Owned<Pipelines>>> {
+        let shaders = prepared.passes.iter().map(|pass| pass.shader);
+        let key = (shaders.collect(), style);
+        let kept = |all: &[(Key, Rc<Owned<Pipelines>>)]| {
+            let found = all.iter().find(|(other, _)| *other == key);
+            found.map(|(_, pipelines)| pipelines.clone())
+        };
+        if let Some(pipelines) = kept(&self.pipelines.borrow()) {
+            return Ok(pipelines);
+        }
+        let built = Rc::new(self.build(prepared, style, vk::PipelineCache::null())?);
+        self.pipelines.borrow_mut().push((key, built.clone()));
+        Ok(built)
+    }
+
+    /// Forgets all pipelines that it has built, and builds and keeps new ones with a cache of this device.
+    ///
+    /// # Errors
+    /// As [`Pipelines::new`].
+    pub fn rebuild(
+        &self,
+        prepared: &Prepared,
+        style: Style,
+        cache: vk::PipelineCache,
+    ) -> Result<()> {
+        let mut kept = self.pipelines.borrow_mut();
+        kept.clear();
+        let shaders = prepared.passes.iter().map(|pass| pass.shader);
+        let built = self.build(prepared, style, cache)?;
+        kept.push(((shaders.collect(), style), Rc::new(built)));
+        Ok(())
+    }
+
+    /// Pipelines that are built anew, with a cache of this device, or none.
+    ///
+    /// # Errors
+    /// As [`Pipelines::new`].
+    pub fn build(
+        &self,
+        prepared: &Prepared,
+        style: Style,
+        cache: vk::PipelineCache,
+    ) -> Result<Owned<Pipelines>> {
+        let options = PipelineOptions {
+            target: Target {
+                samples: self.target.samples(),
+                cull: style.cull,
+                compare: style.compare,
+                ..Target::render_pass(self.target.render_pass())
+            },
+            backend: style.backend,
+            residence: style.residence,
+            spacing: style.spacing,
+            fill: style.fill,
+            fragment: None,
+            layout: None,
+        };
+        let device = self.device.raw();
+        // SAFETY: all of one live device.
+        let built = unsafe { Pipelines::new(device, &self.layout, cache, prepared, &options) };
+        // SAFETY: they were just made by this device.
+        built.map(|pipelines| unsafe { Owned::new(&self.device, pipelines) })
+    }
+}

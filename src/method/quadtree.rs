@@ -5,7 +5,9 @@ mod agreement;
 mod border;
 mod cached;
 mod corner;
+mod irregular;
 mod plain;
+mod subjects;
 mod twin;
 
 use std::time::Instant;
@@ -23,7 +25,8 @@ use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
 
-use border::{Borders, Irregular};
+use border::Borders;
+use irregular::Irregular;
 use plain::is_turned_corner;
 
 /// The row of the table.

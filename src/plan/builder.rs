@@ -193,7 +193,7 @@ enum Grown {
 
 /// A cell that needs no children.
 enum Leaf {
-    Spline(BsplinePatch),
+    Spline(Box<BsplinePatch>),
     Extraordinary(u32),
 }
 
@@ -272,7 +272,9 @@ impl Builder {
         let last = depth >= self.options.max_level.max(SHALLOWEST);
         let direct = self.options.direct_creases || last;
         match (bspline_patch(&level.topology, number), corner) {
-            (Some(patch), _) if patch.crease.is_none() || direct => Some(Leaf::Spline(patch)),
+            (Some(patch), _) if patch.crease.is_none() || direct => {
+                Some(Leaf::Spline(Box::new(patch)))
+            }
             (_, Some(corner)) if last => Some(Leaf::Extraordinary(corner)),
             _ => {
                 assert!(

@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use crate::abi;
 use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
-use crate::method::quadtree::border::Irregular;
+use crate::method::quadtree::irregular::Irregular;
 use crate::plan::{Plan, Stretch, Strip};
 use crate::subdivision::is_plain_edge;
 
@@ -23,13 +23,6 @@ struct Side<'a> {
     plan: &'a Plan,
     /// The edge of the patch, 0..=3.
     edge: u32,
-}
-
-/// Whether a patch's edge runs against the direction of the mesh's edge.
-pub fn is_flipped(topology: &Topology, patch: &Irregular, edge: u32) -> bool {
-    let corner = (patch.turn(topology) + edge) % 4;
-    let number = topology.face_edges(patch.part.face)[corner as usize];
-    topology.face(patch.part.face)[corner as usize] != topology.edge(number).vertices[0]
 }
 
 /// The edges of the mesh that need no plan.
@@ -70,7 +63,7 @@ pub fn agreed_edges(topology: &Topology, patches: &[Irregular], plans: &[Plan]) 
 
 impl Side<'_> {
     fn is_flipped(self) -> bool {
-        is_flipped(self.topology, self.patch, self.edge)
+        self.patch.is_flipped(self.topology, self.edge)
     }
 
     /// The stretches in the direction of the mesh's edge.

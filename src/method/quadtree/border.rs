@@ -2,21 +2,20 @@
 //!
 //! An edge's plan, the order of its vertices and its direction come from the edge alone, and a vertex's from the vertex alone, so all faces
 //! there compute the same bits. Where edge and vertex are plain (smooth, four quads around each vertex) no plan is needed: B-splines
-//! whose sums are symmetric give the same bits to all sides by themselves, to patches without plans as well.
+//! whose sums are symmetric give the same bits to all sides by themselves, to patches without plans as well. And where the plans of both faces on an
+//! edge have the same points along it, each evaluates it with its own (see `agreement.rs`).
 
-use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::abi;
 use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
-use crate::method::quadtree::agreement::{agreed_edges, is_flipped};
+use crate::method::quadtree::agreement::agreed_edges;
+use crate::method::quadtree::irregular::Irregular;
 use crate::method::quadtree::plain::{edge_rows, is_turned_corner, vertex_rows};
-use crate::plan::{
-    Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, Side, VertexKind,
-    VertexPlan,
-};
+use crate::method::quadtree::subjects::{Line, Point, Shared};
+use crate::plan::{PackedPlans, Plan, PlanOptions, Ring, Side};
 use crate::subdivision::{is_plain_edge, is_plain_vertex};
 
 /// The levels that a patch can be drawn at.
@@ -25,153 +24,6 @@ const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
 const USES: usize = abi::USES as usize;
 /// An edge of which the patch has half.
 const HALVES: u32 = abi::USE_FIRST_HALF | abi::USE_SECOND_HALF;
-
-/// An irregular patch: its part, its ring, and the number of its plan.
-pub struct Irregular {
-    pub part: Part,
-    pub ring: Ring,
-    pub plan: u32,
-    /// The order in which stencils of the inside are summed: places in the ring, by the vertices' numbers in the mesh. So faces add what they share in
-    /// the same order, whatever else there is in their rings.
-    pub order: Vec<u16>,
-}
-
-/// An edge of a patch that has a plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Line {
-    /// An edge of the mesh.
-    Edge(u32),
-    /// From the middle of an n-gon's edge to its centre.
-    Spoke { face: u32, corner: u32 },
-}
-
-/// A corner of a patch that has a plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Point {
-    Vertex(u32),
-    Centre(u32),
-}
-
-/// Something that has a plan of its own, and shares it with what looks alike.
-trait Subject: Copy + Eq + std::hash::Hash + Send + Sync {
-    type Plan: Send + Sync;
-    fn ring(self, topology: &Topology) -> Ring;
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<Self::Plan>;
-    fn stencils(plan: &Self::Plan) -> &Plan;
-    /// Whether it lies inside an n-gon: the configuration is the n-gon's then.
-    fn is_inside(self) -> bool;
-}
-
-impl Subject for Line {
-    type Plan = EdgePlan;
-
-    fn ring(self, topology: &Topology) -> Ring {
-        match self {
-            Line::Edge(edge) => Ring::of_edge(topology, edge),
-            Line::Spoke { face, corner } => Ring::from_corner(topology, face, corner),
-        }
-        .expect("lines are the topology's own")
-    }
-
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<EdgePlan> {
-        let kind = if self.is_inside() {
-            EdgeKind::Spoke
-        } else {
-            EdgeKind::Whole
-        };
-        EdgePlan::build(configuration, kind, options)
-    }
-
-    fn stencils(plan: &EdgePlan) -> &Plan {
-        &plan.plan
-    }
-
-    fn is_inside(self) -> bool {
-        matches!(self, Line::Spoke { .. })
-    }
-}
-
-impl Subject for Point {
-    type Plan = VertexPlan;
-
-    fn ring(self, topology: &Topology) -> Ring {
-        match self {
-            Point::Vertex(vertex) => Ring::of_vertex(topology, vertex),
-            Point::Centre(face) => Ring::from_corner(topology, face, 0),
-        }
-        .expect("points are the topology's own")
-    }
-
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<VertexPlan> {
-        let kind = if self.is_inside() {
-            VertexKind::Centre
-        } else {
-            VertexKind::Control
-        };
-        VertexPlan::build(configuration, kind, options)
-    }
-
-    fn stencils(plan: &VertexPlan) -> &Plan {
-        &plan.plan
-    }
-
-    fn is_inside(self) -> bool {
-        matches!(self, Point::Centre(_))
-    }
-}
-
-/// The rings and plans of subjects of one kind.
-struct Shared<S: Subject> {
-    /// Each subject's ring, and the number of its plan.
-    known: FxHashMap<S, (Ring, usize)>,
-    plans: Vec<S::Plan>,
-    /// The number of the first among all packed plans.
-    first: u32,
-}
-
-impl<S: Subject> Shared<S> {
-    fn new(
-        topology: &Topology,
-        subjects: impl Iterator<Item = S>,
-        packed: &mut PackedPlans,
-        options: PlanOptions,
-    ) -> Result<Shared<S>> {
-        let mut seen = FxHashSet::default();
-        let subjects: Vec<S> = subjects.filter(|&subject| seen.insert(subject)).collect();
-        let rings: Vec<Ring> = subjects
-            .par_iter()
-            .map(|&subject| subject.ring(topology))
-            .collect();
-        let mut numbers: FxHashMap<(bool, &Configuration), usize> = FxHashMap::default();
-        let mut firsts: Vec<usize> = Vec::new();
-        let plans: Vec<usize> = subjects
-            .iter()
-            .enumerate()
-            .map(|(i, subject)| {
-                let key = (subject.is_inside(), &rings[i].configuration);
-                *numbers.entry(key).or_insert_with(|| {
-                    firsts.push(i);
-                    firsts.len() - 1
-                })
-            })
-            .collect();
-        let built: Result<Vec<S::Plan>> = firsts
-            .par_iter()
-            .map(|&i| subjects[i].build(&rings[i].configuration, options))
-            .collect();
-        let built = built?;
-        let first = packed.headers.len() as u32;
-        for plan in &built {
-            packed.push(S::stencils(plan))?;
-        }
-        let rings = rings.into_iter().zip(plans);
-        Ok(Shared {
-            known: subjects.into_iter().zip(rings).collect(),
-            plans: built,
-            first,
-        })
-    }
-}
 
 /// Borders, each once.
 #[derive(Default)]
@@ -221,37 +73,6 @@ fn points(topology: &Topology, part: Part, turn: u32) -> [Option<Point>; 4] {
     }
     let own = Point::Vertex(vertices[part.corner as usize]);
     [Some(own), None, Some(Point::Centre(part.face)), None]
-}
-
-impl Irregular {
-    pub fn new(part: Part, ring: Ring, plan: u32) -> Irregular {
-        let mut order: Vec<u16> = (0..ring.vertices.len() as u16).collect();
-        order.sort_unstable_by_key(|&place| ring.vertices[place as usize]);
-        Irregular {
-            part,
-            ring,
-            plan,
-            order,
-        }
-    }
-
-    /// The order as it stands behind the ring in the list of control vertices: two 16-bit halves a word, the lower first.
-    pub fn order_words(&self) -> impl Iterator<Item = u32> {
-        let pairs = self.order.chunks(2);
-        pairs.map(|pair| {
-            let second = pair.get(1).copied().unwrap_or(0);
-            u32::from(pair[0]) | u32::from(second) << 16
-        })
-    }
-
-    /// The corner of the quad at which the patch begins.
-    pub fn turn(&self, topology: &Topology) -> u32 {
-        if topology.face(self.part.face).len() == 4 {
-            self.ring.start
-        } else {
-            0
-        }
-    }
 }
 
 impl Borders {
@@ -383,7 +204,7 @@ impl Builder<'_> {
         for (edge, (line, flags, corner)) in (0..).zip(lines(topology, patch.part, turn)) {
             let number = 1 + edge as usize;
             if matches!(line, Line::Edge(edge) if self.agreed.contains(&edge)) {
-                let flipped = is_flipped(topology, patch, edge);
+                let flipped = patch.is_flipped(topology, edge);
                 let turn = (edge + 2 * u32::from(flipped)) % 4;
                 let direction = if flipped { abi::USE_FLIPPED } else { 0 };
                 border.flags[number] = abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;

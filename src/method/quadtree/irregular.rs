@@ -1,0 +1,53 @@
+//! Patches that need plans.
+
+use crate::mesh::topology::Topology;
+use crate::method::patches::Part;
+use crate::plan::Ring;
+
+/// An irregular patch: its part, its ring, and the number of its plan.
+pub struct Irregular {
+    pub part: Part,
+    pub ring: Ring,
+    pub plan: u32,
+    /// The order in which stencils of the inside are summed: places in the ring, by the vertices' numbers in the mesh. So faces add what they share in
+    /// the same order, whatever else there is in their rings.
+    pub order: Vec<u16>,
+}
+
+impl Irregular {
+    pub fn new(part: Part, ring: Ring, plan: u32) -> Irregular {
+        let mut order: Vec<u16> = (0..ring.vertices.len() as u16).collect();
+        order.sort_unstable_by_key(|&place| ring.vertices[place as usize]);
+        Irregular {
+            part,
+            ring,
+            plan,
+            order,
+        }
+    }
+
+    /// The order as it stands behind the ring in the list of control vertices: two 16-bit halves a word, the lower first.
+    pub fn order_words(&self) -> impl Iterator<Item = u32> {
+        let pairs = self.order.chunks(2);
+        pairs.map(|pair| {
+            let second = pair.get(1).copied().unwrap_or(0);
+            u32::from(pair[0]) | u32::from(second) << 16
+        })
+    }
+
+    /// The corner of the quad at which the patch begins.
+    pub fn turn(&self, topology: &Topology) -> u32 {
+        if topology.face(self.part.face).len() == 4 {
+            self.ring.start
+        } else {
+            0
+        }
+    }
+
+    /// Whether edge 0..=3 of a quad's patch runs against the direction of the mesh's edge.
+    pub fn is_flipped(&self, topology: &Topology, edge: u32) -> bool {
+        let corner = ((self.turn(topology) + edge) % 4) as usize;
+        let number = topology.face_edges(self.part.face)[corner];
+        topology.face(self.part.face)[corner] != topology.edge(number).vertices[0]
+    }
+}

@@ -267,16 +267,6 @@ fn imports() -> BTreeMap<String, BTreeSet<String>> {
     own.iter().map(of).collect()
 }
 
-/// Circles that are yet to be undone; none may be added.
-const CIRCLES: [&str; 6] = [
-    "frame::backend",
-    "frame::batches",
-    "frame::options",
-    "gpu::cache",
-    "gpu::points",
-    "gpu::pose",
-];
-
 #[test]
 fn no_files_import_each_other_in_circles() {
     let imports = imports();
@@ -297,7 +287,7 @@ fn no_files_import_each_other_in_circles() {
         reached.contains(module.as_str())
     };
     let circles: Vec<&String> = imports.keys().filter(is_in_circle).collect();
-    assert_eq!(circles, CIRCLES);
+    assert!(circles.is_empty(), "{circles:?}");
 }
 
 #[test]

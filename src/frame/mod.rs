@@ -10,11 +10,13 @@ mod draw;
 mod draw_list;
 mod options;
 mod patterns;
+mod residence;
 
 pub use backend::Backend;
 pub use cut::Cut;
 pub use draw::Draw;
 pub use draw_list::{Batch, DrawList};
-pub use options::{Residence, Slots, SurfaceOptions};
+pub use options::{Slots, SurfaceOptions};
 #[cfg(feature = "vulkan")]
 pub(crate) use patterns::{Key, key};
+pub use residence::Residence;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::Bounds;
-use crate::frame::{Backend, Cut};
+use crate::frame::{Backend, Cut, Residence};
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
 
@@ -14,31 +14,6 @@ pub enum Slots {
     Counter,
     /// The host, by summing up beforehand. The same slots whatever runs when or how often.
     Host,
-}
-
-/// Where the control points live of patches that are evaluated by stencils.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Residence {
-    /// In the scratch ring: the control shaders compute them as they go (Brainerd et al. 2016, section 5). Memory is bounded, and every draw
-    /// computes them again. Best for a single pass over what moves.
-    #[default]
-    Ring,
-    /// In a cache of the pose: a compute pass computes each once (section 8.2), for any number of passes, views, frames and back-ends. No draw
-    /// waits for another.
-    Cache,
-}
-
-impl Residence {
-    /// All.
-    pub const ALL: [Residence; 2] = [Residence::Ring, Residence::Cache];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Residence::Ring => "ring",
-            Residence::Cache => "cache",
-        }
-    }
 }
 
 /// How a surface uses the device.

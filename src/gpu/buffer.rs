@@ -3,8 +3,7 @@
 use crate::error::{Error, Misuse, Result};
 use crate::gpu::{Memory, MemoryBlock, MemoryRequest, failed};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocation, Allocator};
-use gpu_allocator::{AllocationError, MemoryLocation};
+use gpu_allocator::MemoryLocation;
 
 /// A Vulkan buffer and the memory bound to it.
 ///
@@ -112,45 +111,6 @@ impl Buffer {
         unsafe { device.destroy_buffer(self.raw, None) };
         memory.free(self.block);
     }
-}
-
-/// Gives memory back to gpu-allocator.
-pub(crate) fn free(allocator: &mut Allocator, allocation: Allocation) {
-    allocator
-        .free(allocation)
-        .expect("memory goes back to the allocator it came from");
-}
-
-/// The allocator's failures as this crate's errors.
-pub(crate) fn out_of_memory(error: AllocationError) -> Error {
-    // Of most codes the allocator keeps the words alone.
-    let named = |words: &str| {
-        let codes = [
-            vk::Result::ERROR_OUT_OF_HOST_MEMORY,
-            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
-            vk::Result::ERROR_DEVICE_LOST,
-            vk::Result::ERROR_MEMORY_MAP_FAILED,
-        ];
-        let is_meant =
-            |code: &vk::Result| words == code.to_string() || words.ends_with(&format!("{code:?}"));
-        codes.into_iter().find(is_meant)
-    };
-    let (call, code) = match &error {
-        AllocationError::OutOfMemory => {
-            let code = vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
-            ("vkAllocateMemory", Some(code))
-        }
-        AllocationError::FailedToMap(words) => ("vkMapMemory", named(words)),
-        AllocationError::Internal(words) => ("vkAllocateMemory", named(words)),
-        _ => ("vkAllocateMemory", None),
-    };
-    code.map_or_else(
-        || Error::Vulkan {
-            call,
-            result: error.to_string(),
-        },
-        failed(call),
-    )
 }
 
 /// # Safety

@@ -14,33 +14,6 @@ use crate::method::{Jobs, Prepared};
 /// Workgroups of a dispatch that every device takes (Vulkan spec, "Required Limits", `maxComputeWorkGroupCount`).
 const MOST_GROUPS: u32 = 65_535;
 
-/// What is known of a pose's cache.
-#[derive(Debug)]
-pub(super) struct Cache {
-    /// The plan level up to which it has the points of the present positions; None where it has none.
-    level: Option<u32>,
-    bytes: u64,
-}
-
-impl Cache {
-    /// None where control points are not cached.
-    pub fn new(tables: &Tables) -> Option<Cache> {
-        let (deepest, points) = tables.cached()?;
-        Some(Cache {
-            level: None,
-            bytes: POINT_BYTES * u64::from(points.count(*deepest)),
-        })
-    }
-
-    /// Its bytes.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-}
-
-/// Three floats.
-const POINT_BYTES: u64 = 12;
-
 /// The pipelines that fill caches, one a pass that has any.
 #[derive(Debug)]
 pub struct CachePipelines {

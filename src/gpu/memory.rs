@@ -7,11 +7,11 @@ use std::ptr::NonNull;
 use std::sync::MutexGuard;
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
+use gpu_allocator::{AllocationError, MemoryLocation};
 
-use crate::error::Result;
-use crate::gpu::buffer::{free, out_of_memory};
+use crate::error::{Error, Result};
+use crate::gpu::failed;
 
 /// Memory that is asked for, for a buffer.
 #[derive(Clone, Copy, Debug)]
@@ -118,4 +118,43 @@ unsafe impl Memory for RefMut<'_, Allocator> {
     fn free(&mut self, block: MemoryBlock) {
         Memory::free(&mut **self, block);
     }
+}
+
+/// Gives memory back to gpu-allocator.
+pub(crate) fn free(allocator: &mut Allocator, allocation: Allocation) {
+    allocator
+        .free(allocation)
+        .expect("memory goes back to the allocator it came from");
+}
+
+/// The allocator's failures as this crate's errors.
+pub(crate) fn out_of_memory(error: AllocationError) -> Error {
+    // Of most codes the allocator keeps the words alone.
+    let named = |words: &str| {
+        let codes = [
+            vk::Result::ERROR_OUT_OF_HOST_MEMORY,
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
+            vk::Result::ERROR_DEVICE_LOST,
+            vk::Result::ERROR_MEMORY_MAP_FAILED,
+        ];
+        let is_meant =
+            |code: &vk::Result| words == code.to_string() || words.ends_with(&format!("{code:?}"));
+        codes.into_iter().find(is_meant)
+    };
+    let (call, code) = match &error {
+        AllocationError::OutOfMemory => {
+            let code = vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
+            ("vkAllocateMemory", Some(code))
+        }
+        AllocationError::FailedToMap(words) => ("vkMapMemory", named(words)),
+        AllocationError::Internal(words) => ("vkAllocateMemory", named(words)),
+        _ => ("vkAllocateMemory", None),
+    };
+    code.map_or_else(
+        || Error::Vulkan {
+            call,
+            result: error.to_string(),
+        },
+        failed(call),
+    )
 }

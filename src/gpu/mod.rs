@@ -7,6 +7,7 @@ mod barrier;
 mod bound;
 pub mod buffer;
 mod cache;
+mod cached;
 mod call;
 mod draw;
 pub mod driver;

@@ -7,7 +7,7 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
-use crate::gpu::cache::Cache;
+use crate::gpu::cached::Cache;
 use crate::gpu::staging::{Staging, cmd_copy};
 use crate::gpu::{Layout, Memory, Tables};
 use crate::method::{Controls, Prepared};

@@ -84,7 +84,7 @@ impl Device {
         // SAFETY: the device was created with one queue of this family.
         let queue = unsafe { logical.raw.get_device_queue(family, 0) };
         Ok(Device(Arc::new(Shared {
-            allocator: Mutex::new(allocator.map_err(crate::gpu::buffer::out_of_memory)?),
+            allocator: Mutex::new(allocator.map_err(crate::gpu::memory::out_of_memory)?),
             queue: Mutex::new(queue),
             info,
             hung: AtomicBool::new(false),

@@ -1,7 +1,7 @@
 //! A picture to draw into without a window, and to read back.
 
 use crate::error::{Error, Result};
-use crate::gpu::buffer::{free, out_of_memory};
+use crate::gpu::memory::{free, out_of_memory};
 use crate::gpu::{Buffer, failed};
 use crate::host::Device;
 use crate::host::render_pass::{self, Formats};

@@ -120,3 +120,43 @@ fn what_cannot_be_measured_is_refused_before_anything_is_written() {
             .is_none()
     );
 }
+
+#[test]
+fn instances_are_one_draw_from_the_cache_and_one_each_in_the_ring() {
+    if !has_device() {
+        return;
+    }
+    let rows = |instances: &str| {
+        let output = run(&[
+            "bench",
+            "builtin:cube",
+            "--methods",
+            "quadtree",
+            "--levels",
+            "4",
+            "--residence",
+            "cache,ring",
+            "--instances",
+            instances,
+            "--frames",
+            "1",
+            "--json",
+        ]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let report: Value = serde_json::from_str(&stdout(&output)).expect("JSON alone");
+        let rows = report["rows"].as_array().expect("rows").clone();
+        let of = |residence: &str| {
+            let row = rows
+                .iter()
+                .find(|row| row["residence"] == residence && row["method"] == "quadtree");
+            let row = row.unwrap_or_else(|| panic!("no row of {residence}"));
+            ["draws", "points_computed", "evaluation_invocations"]
+                .map(|key| row[key].as_u64().expect("a number"))
+        };
+        [of("cache"), of("ring")]
+    };
+    let [one, five] = ["1", "5"].map(rows);
+    let [[draws, points, vertices], _] = one;
+    assert_eq!(five[0], [draws, points, 5 * vertices]);
+    assert_eq!(five[1], one[1].map(|count| 5 * count));
+}

@@ -13,7 +13,7 @@ use crate::gpu::{
     PointPipeline, Pose, Tables, View,
 };
 use crate::mesh::Model;
-use crate::method::{DepthTags, Prepared};
+use crate::method::{CachedPoints, DepthTags, Prepared};
 
 /// A prepared model on the device: [`Tables`], a [`Pose`] and a [`FrameSlot`] in one. It borrows nothing; the owner calls
 /// [`TessellatedSurface::destroy`].
@@ -185,6 +185,11 @@ impl TessellatedSurface {
             self.pose
                 .cmd_cache(device, cmd, layout, pipelines, tables, list)
         }
+    }
+
+    /// As [`Tables::cached_points`].
+    pub fn cached_points(&self) -> Option<&CachedPoints> {
+        self.tables.cached_points()
     }
 
     /// As [`Drawing::is_cached`].

@@ -166,6 +166,11 @@ impl Tables {
         self.cached.as_ref()
     }
 
+    /// What poses have in their caches, but for the tables that are on the device; None where control points are not cached.
+    pub fn cached_points(&self) -> Option<&CachedPoints> {
+        self.cached.as_ref().map(|(_, points)| points)
+    }
+
     /// The bytes on the device, those aside that an upload is staged in.
     pub fn bytes(&self) -> u64 {
         self.bound.bytes()

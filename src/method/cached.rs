@@ -12,7 +12,7 @@ pub struct CachedPoints {
     /// How many points the levels up to each have.
     pub ends: [u32; LEVELS],
     /// The products of a weight and a vertex that these take.
-    pub products: [u64; LEVELS],
+    pub sums: [u64; LEVELS],
     /// The passes of what was prepared; empty for those whose points are not cached.
     pub passes: Vec<CachedPass>,
 }
@@ -41,6 +41,11 @@ impl CachedPoints {
     /// How many points there are up to a level.
     pub fn count(&self, level: u32) -> u32 {
         self.ends[(level as usize).min(LEVELS - 1)]
+    }
+
+    /// The products of a weight and a vertex that these take.
+    pub fn products(&self, level: u32) -> u64 {
+        self.sums[(level as usize).min(LEVELS - 1)]
     }
 }
 

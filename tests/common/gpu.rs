@@ -148,6 +148,7 @@ impl Loaded<'_> {
                     displacement,
                     ..self.view
                 },
+                instances: 1,
                 batches: list.round(round).expect("as many as options say").collect(),
             });
         let shots: Vec<Shot<'_>> = shots.collect();

@@ -132,6 +132,8 @@ impl<'a> Scene<'a> {
             Ok(())
         });
         drawn.expect("it is executed");
+        // SAFETY: every submission has been waited for.
+        unsafe { pipelines.destroy(device) };
     }
 
     /// The picture that a classic render pass makes.

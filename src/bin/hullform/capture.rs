@@ -72,6 +72,7 @@ pub fn capture(
         drawing.draw(&[Shot {
             pipelines: &pipelines,
             view: drawing::nowhere(),
+            instances: 1,
             batches: vec![batch],
         }])?;
         drawing.check([batch])?;

@@ -103,6 +103,7 @@ impl Subject<'_> {
                 drawing.draw(&[Shot {
                     pipelines,
                     view: self.view(),
+                    instances: 1,
                     batches: vec![batch],
                 }])?;
                 drawing.check([batch])?;

@@ -312,6 +312,7 @@ fn draw_with(
         Ok(Shot {
             pipelines,
             view: library_view(view, scene),
+            instances: 1,
             batches: list.round(round)?.collect(),
         })
     });

@@ -1,5 +1,7 @@
 //! A model on a bench: drawn, captured and counted, submission by submission.
 
+use std::ops::Range;
+
 use ash::vk;
 
 use super::{Bench, Shot, Style};
@@ -286,7 +288,10 @@ impl Loaded<'_> {
         after: impl FnOnce(vk::CommandBuffer),
     ) -> Result<Option<[u64; 3]>> {
         let (target, query) = (self.bench.target(), self.bench.statistics.as_ref());
-        let views: Vec<View> = shots.iter().map(|shot| shot.view).collect();
+        let views = shots
+            .iter()
+            .flat_map(|shot| vec![shot.view; shot.instances as usize]);
+        let views: Vec<View> = views.collect();
         let device = self.bench.device();
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
         device.submit(|cmd| unsafe {
@@ -296,12 +301,15 @@ impl Loaded<'_> {
                 query.cmd_reset(cmd);
             }
             target.begin(cmd, [0.0; 4]);
+            let mut first = 0;
             for (number, shot) in (0..).zip(shots) {
                 let query = query.filter(|_| number == 0);
+                let views = first..first + shot.instances;
+                first = views.end;
                 if let Some(query) = query {
                     query.cmd_begin(cmd);
                 }
-                self.cmd_draws(cmd, number, shot)?;
+                self.cmd_draws(cmd, views, shot)?;
                 if let Some(query) = query {
                     query.cmd_end(cmd);
                 }
@@ -320,7 +328,12 @@ impl Loaded<'_> {
     ///
     /// # Safety
     /// As [`TessellatedSurface::cmd_draw`].
-    unsafe fn cmd_draws(&self, cmd: vk::CommandBuffer, view: u32, shot: &Shot<'_>) -> Result<()> {
+    unsafe fn cmd_draws(
+        &self,
+        cmd: vk::CommandBuffer,
+        views: Range<u32>,
+        shot: &Shot<'_>,
+    ) -> Result<()> {
         let (device, layout) = (self.bench.device().raw(), self.bench.layout());
         let own_barriers = self.surface.options().barriers;
         for (number, &batch) in shot.batches.iter().enumerate() {
@@ -333,7 +346,7 @@ impl Loaded<'_> {
                 }
                 let pipelines = shot.pipelines;
                 self.surface
-                    .cmd_draw(device, cmd, layout, pipelines, view..view + 1, batch)?;
+                    .cmd_draw(device, cmd, layout, pipelines, views.clone(), batch)?;
             }
         }
         Ok(())
@@ -350,6 +363,7 @@ impl Loaded<'_> {
         let shot = Shot {
             pipelines: &pipelines,
             view: self.view,
+            instances: 1,
             batches: batches.to_vec(),
         };
         let statistics = self.draw(&[shot])?;
@@ -412,6 +426,7 @@ impl Loaded<'_> {
         self.draw(&[Shot {
             pipelines: &pipelines,
             view: self.view,
+            instances: 1,
             batches: list.batches().collect(),
         }])?;
         match self.surface.counters()?.overflows {

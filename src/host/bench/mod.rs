@@ -61,13 +61,15 @@ impl Style {
     }
 }
 
-/// Batches that are drawn with the same pipelines, as seen in the same view.
+/// Batches that are drawn with the same pipelines, as seen in the same view, once or as often as there are instances.
 #[derive(Clone, Debug)]
 pub struct Shot<'s> {
     /// The pipelines.
     pub pipelines: &'s Pipelines,
     /// The view.
     pub view: View,
+    /// How many instances there are, which all are seen alike; 1 where control points are in the ring.
+    pub instances: u32,
     /// The batches.
     pub batches: Vec<Batch<'s>>,
 }

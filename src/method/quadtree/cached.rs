@@ -92,7 +92,7 @@ pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
         let patch_number = Patch::new(&prepared.passes[pass], patch);
         for job in with_normal(job) {
             jobs[pass].push([patch as u32, job]);
-            made.products[level as usize] += patch_number.products(job);
+            made.sums[level as usize] += patch_number.products(job);
             own.count += 1;
             next += 1;
         }
@@ -100,7 +100,7 @@ pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
     }
     for level in 1..made.ends.len() {
         made.ends[level] = made.ends[level].max(made.ends[level - 1]);
-        made.products[level] += made.products[level - 1];
+        made.sums[level] += made.sums[level - 1];
     }
     let mut blocks: Vec<[Vec<u32>; 2]> = vec![Default::default(); prepared.passes.len()];
     for ((&(pass, ..), points), numbers) in all.iter().zip(&points).zip(&numbers) {

@@ -71,6 +71,9 @@ pub struct Arguments {
     /// How many times a frame draws the surface
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
     passes: u32,
+    /// How many instances each pass draws: all in one draw of a batch, but one by one where control points are in the ring
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    instances: u32,
     /// Frames that are measured of each, all in turn; one more warms up
     #[arg(long, value_name = "N", default_value = "20", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     frames: u32,

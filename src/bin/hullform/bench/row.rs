@@ -33,6 +33,7 @@ pub struct Row {
     pub residence: &'static str,
     pub is_static: bool,
     pub passes: u32,
+    pub instances: u32,
     /// Seconds of all threads of the process for each frame; empty where the system does not tell.
     pub cpu: Vec<f64>,
     /// Seconds between the device's timestamps for each frame; empty where it has none.
@@ -67,7 +68,7 @@ impl Row {
         device.or(least(&self.cpu)).or(least(&self.gpu))
     }
 
-    /// As the files have it. Of one instance.
+    /// As the files have it.
     pub fn json(&self) -> Value {
         json!({
             "model": self.model,
@@ -75,7 +76,7 @@ impl Row {
             "level": self.level,
             "residence": self.residence,
             "backend": self.backend,
-            "instances": 1,
+            "instances": self.instances,
             "passes": self.passes,
             "static": self.is_static,
             "cpu_ms": milliseconds(least(&self.cpu)),
@@ -101,6 +102,7 @@ impl Row {
             && self.level == other.level
             && self.backend == other.backend
             && self.passes == other.passes
+            && self.instances == other.instances
     }
 }
 
@@ -208,6 +210,7 @@ mod tests {
             residence: "ring",
             is_static: false,
             passes: 1,
+            instances: 1,
             cpu: cpu.to_vec(),
             gpu: gpu.to_vec(),
             is_software,

@@ -24,6 +24,7 @@ pub struct Subject<'a> {
     residence: Residence,
     is_static: bool,
     passes: u32,
+    instances: Instances,
     ring_bytes: u64,
     device_bytes: u64,
     drawing: Drawing<'a>,
@@ -32,6 +33,15 @@ pub struct Subject<'a> {
     /// Whether the device tells if frames are whole. Elsewhere the shaders do, and all methods bear an atomic operation a vertex.
     device_counts: bool,
     levels: Vec<Level>,
+}
+
+/// How instances are drawn.
+#[derive(Clone, Copy)]
+struct Instances {
+    /// How many a draw has: all of them, but one where it fills the ring.
+    a_draw: u32,
+    /// How many draws of each batch that takes in a pass.
+    draws: u32,
 }
 
 /// A level, and what its frames took and did.
@@ -55,6 +65,18 @@ impl<'a> Subject<'a> {
         arguments: &Arguments,
         global: &Global,
     ) -> Result<Subject<'a>> {
+        let in_ring = residence == Residence::Ring
+            && prepared.passes.iter().any(|pass| pass.cached.is_some());
+        let instances = match in_ring {
+            true => Instances {
+                a_draw: 1,
+                draws: arguments.instances,
+            },
+            false => Instances {
+                a_draw: arguments.instances,
+                draws: 1,
+            },
+        };
         let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
         let device_counts = gpu.device.info().support.optional.pipeline_statistics_query
             && backend == Backend::Tessellator;
@@ -65,7 +87,8 @@ impl<'a> Subject<'a> {
             ring_bytes: global.ring_bytes,
             slots: drawing::slots(global.slots),
             greatest_level: greatest,
-            rounds: arguments.passes,
+            rounds: arguments.passes * instances.draws,
+            views: instances.a_draw,
             ..SurfaceOptions::default()
         };
         let before = gpu.device.allocated_bytes();
@@ -91,6 +114,7 @@ impl<'a> Subject<'a> {
             residence,
             is_static: arguments.is_static,
             passes: arguments.passes,
+            instances,
             ring_bytes: match residence {
                 Residence::Ring => global.ring_bytes,
                 Residence::Cache => 0,
@@ -152,12 +176,13 @@ impl<'a> Subject<'a> {
             false => 0,
         };
         let mut batches = Vec::new();
-        for round in 0..self.passes {
+        for round in 0..self.rounds() {
             batches.extend(list.round(round)?);
         }
         let shot = Shot {
             pipelines: &self.pipelines,
             view: drawing::nowhere(),
+            instances: self.instances.a_draw,
             batches,
         };
         let begin = |cmd| {
@@ -169,14 +194,21 @@ impl<'a> Subject<'a> {
         Ok((cached, counted))
     }
 
+    /// How often a frame draws each batch.
+    fn rounds(&self) -> u32 {
+        self.passes * self.instances.draws
+    }
+
     /// What the frame just drawn did. One of which something is missing would be a fast one, and is refused.
     fn work(&self, number: usize, cached: u32, counted: Option<[u64; 3]>) -> Result<Work> {
         let list = &self.levels[number].list;
         let batches = || {
-            (0..self.passes)
+            (0..self.rounds())
                 .filter_map(|round| list.round(round).ok())
                 .flatten()
         };
+        // Once for each instance.
+        let drawn = || (0..self.instances.a_draw).flat_map(|_| batches());
         let counters = self.drawing.surface().counters()?;
         if counters.overflows > 0 {
             return Err(Error::Refused(format!(
@@ -184,11 +216,11 @@ impl<'a> Subject<'a> {
                 counters.overflows
             )));
         }
-        let predicted: u64 = batches().map(|batch| u64::from(batch.vertices())).sum();
+        let predicted: u64 = drawn().map(|batch| u64::from(batch.vertices())).sum();
         let evaluations = match counted.filter(|_| self.device_counts) {
             Some([_, evaluations, _]) => evaluations,
             None => {
-                self.drawing.surface().arrival(batches())?.check()?;
+                self.drawing.surface().arrival(drawn())?.check()?;
                 predicted
             }
         };
@@ -204,17 +236,24 @@ impl<'a> Subject<'a> {
             patches.map(|patch| list.cut().products(pass, patch)).sum()
         };
         Ok(Work {
-            patches: batches().map(|batch| batch.patches().len() as u64).sum(),
+            patches: drawn().map(|batch| batch.patches().len() as u64).sum(),
             evaluations,
             points: u64::from(counters.points) + u64::from(cached),
             products: match self.residence {
                 Residence::Ring => batches().map(products).sum(),
-                Residence::Cache if cached > 0 => list.batches().map(products).sum(),
+                Residence::Cache if cached > 0 => self.cached_products(list),
                 Residence::Cache => 0,
             },
             draws: batches().map(|batch| batch.draws().len() as u64).sum(),
             barriers: batches().filter(|batch| batch.waits()).count() as u64,
         })
+    }
+
+    /// The products of all that a list needs in a cache.
+    fn cached_products(&self, list: &DrawList) -> u64 {
+        let points = self.drawing.surface().cached_points();
+        let level = list.cached_level().zip(points);
+        level.map_or(0, |(level, points)| points.products(level))
     }
 
     /// A row a level.
@@ -227,6 +266,7 @@ impl<'a> Subject<'a> {
             residence: self.residence.name(),
             is_static: self.is_static,
             passes: self.passes,
+            instances: self.instances.a_draw * self.instances.draws,
             cpu: level.cpu.clone(),
             gpu: level.gpu.clone(),
             is_software: self.gpu.device.is_software(),

@@ -67,6 +67,7 @@ fn draw(bench: &Bench, drawing: &Drawing<'_>, list: &DrawList) -> Result<f64> {
     let shot = Shot {
         pipelines: &pipelines,
         view: drawing::nowhere(),
+        instances: 1,
         batches: list.batches().collect(),
     };
     let started = Instant::now();

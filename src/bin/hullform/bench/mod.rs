@@ -103,6 +103,7 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let plot = arguments.plot.as_deref().map(|path| ("--plot", path));
     let writes: Vec<_> = [json, csv, plot].into_iter().flatten().collect();
     let files = output::create(&reads, &writes)?;
+    keep_memory();
     let gpu = Gpu::open(global)?;
     let mut rows = Vec::new();
     for path in &arguments.models {
@@ -133,6 +134,17 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         print_json(&report)
     } else {
         print(&row::as_text(&title, &rows))
+    }
+}
+
+/// Has the C library keep what is given back to it. llvmpipe takes what frames need from there, and what comes fresh from the system costs page faults, for
+/// some sizes and runs in every frame: frames took up to four times as long, by chance.
+fn keep_memory() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    // SAFETY: it sets numbers of the allocator; no other thread runs yet.
+    unsafe {
+        libc::mallopt(libc::M_MMAP_MAX, 0);
+        libc::mallopt(libc::M_TRIM_THRESHOLD, i32::MAX);
     }
 }
 

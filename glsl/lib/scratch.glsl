@@ -17,17 +17,17 @@ layout(set = SET_POSE, binding = BINDING_POINTS, scalar) buffer Cache { vec3 cac
 layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer Cache { vec3 cached[]; };
 #endif
 
-// Where what a patch has of places begins.
-uint slot_of(uint number) { return words[bases.own[4] + number]; }
+// Where the places of a patch's points begin.
+uint slot_of(uint number) { return bases.own[5] + words[bases.own[4] + number]; }
 
-// Among these places, those of a use's points.
-uint use_points(uint slot, uint number) { return words[bases.own[5] + slot + number]; }
+// Among them, those of a use.
+uint use_points(uint slot, uint number) { return bases.own[5] + words[slot + number]; }
 
 // What the points of a use are relative to where their plan says nothing else.
-vec3 use_origin(uint slot, uint number) { return cached[words[bases.own[5] + slot + USES + number]]; }
+vec3 use_origin(uint slot, uint number) { return cached[words[slot + USES + number]]; }
 
 // The point at a place.
-vec3 point_at(uint place) { return cached[words[bases.own[5] + place]]; }
+vec3 point_at(uint place) { return cached[words[place]]; }
 #else
 layout(set = SET_FRAME, binding = BINDING_SCRATCH, scalar) coherent buffer Scratch { vec4 scratch[]; };
 layout(set = SET_FRAME, binding = BINDING_COUNTERS, scalar) coherent buffer Counters { uint counters[]; };

@@ -7,6 +7,7 @@ use std::hash::{Hash, Hasher};
 
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHasher};
+use smallvec::SmallVec;
 
 use crate::abi;
 use crate::method::cached::{CachedPass, CachedPoints};
@@ -15,6 +16,9 @@ use crate::method::{Pass, Prepared, Table};
 use crate::tessellation::{Spacing, levels, required_level};
 
 const USES: usize = abi::USES as usize;
+
+/// The vertices of a ring.
+type Vertices = SmallVec<[u32; 32]>;
 
 /// A point that a patch needs.
 #[derive(Clone, Copy)]
@@ -54,54 +58,21 @@ struct Patch<'a> {
 
 /// What a cache holds up to a plan level.
 pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
-    let patches = || {
-        let passes = prepared.passes.iter().enumerate();
-        let cached = passes.filter(|(_, pass)| pass.cached.is_some());
-        cached.flat_map(|(i, pass)| (0..pass.patches.len()).map(move |number| (i, pass, number)))
-    };
-    let all: Vec<(usize, &Pass, usize)> = patches().collect();
+    let passes = prepared.passes.iter().enumerate();
+    let cached = passes.filter(|(_, pass)| pass.cached.is_some());
+    let all: Vec<(usize, &Pass, usize)> = cached
+        .flat_map(|(i, pass)| (0..pass.patches.len()).map(move |number| (i, pass, number)))
+        .collect();
     let points: Vec<PatchPoints> = all
         .par_iter()
         .map(|&(_, pass, number)| Patch::new(pass, number).points(deepest))
         .collect();
     let (owned, numbers) = shared(prepared, &all, &points);
-    let mut order: Vec<u32> = (0..owned.len() as u32).collect();
-    order.sort_by_key(|&number| {
-        let owned = &owned[number as usize];
-        (owned.level, owned.pass)
-    });
     let mut made = CachedPoints {
         passes: vec![CachedPass::default(); prepared.passes.len()],
         ..CachedPoints::default()
     };
-    let mut jobs: Vec<Vec<[u32; 2]>> = vec![Vec::new(); prepared.passes.len()];
-    let mut places = vec![0; owned.len()];
-    let mut next = 0;
-    for number in order {
-        let Owned {
-            pass,
-            patch,
-            job,
-            level,
-        } = owned[number as usize];
-        places[number as usize] = next;
-        let own = &mut made.passes[pass].jobs[level as usize];
-        if own.count == 0 {
-            (own.first, own.first_point) = (jobs[pass].len() as u32, next);
-        }
-        let patch_number = Patch::new(&prepared.passes[pass], patch);
-        for job in with_normal(job) {
-            jobs[pass].push([patch as u32, job]);
-            made.sums[level as usize] += patch_number.products(job);
-            own.count += 1;
-            next += 1;
-        }
-        made.ends[level as usize] = next;
-    }
-    for level in 1..made.ends.len() {
-        made.ends[level] = made.ends[level].max(made.ends[level - 1]);
-        made.sums[level] += made.sums[level - 1];
-    }
+    let (jobs, places) = place(prepared, &owned, &mut made);
     let mut blocks: Vec<[Vec<u32>; 2]> = vec![Default::default(); prepared.passes.len()];
     for ((&(pass, ..), points), numbers) in all.iter().zip(&points).zip(&numbers) {
         let [starts, block] = &mut blocks[pass];
@@ -119,7 +90,50 @@ pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
     made
 }
 
-/// Each point once, and for each patch which these are that it needs.
+/// Gives points their places, level by level, and each pass its jobs in this order.
+fn place(
+    prepared: &Prepared,
+    owned: &[Owned],
+    made: &mut CachedPoints,
+) -> (Vec<Vec<[u32; 2]>>, Vec<u32>) {
+    let mut order: Vec<u32> = (0..owned.len() as u32).collect();
+    order.sort_by_key(|&number| {
+        let owned = &owned[number as usize];
+        (owned.level, owned.pass)
+    });
+    let mut jobs: Vec<Vec<[u32; 2]>> = vec![Vec::new(); prepared.passes.len()];
+    let mut places = vec![0; owned.len()];
+    let mut next = 0;
+    for number in order {
+        let Owned {
+            pass,
+            patch,
+            job,
+            level,
+        } = owned[number as usize];
+        places[number as usize] = next;
+        let own = &mut made.passes[pass].jobs[level as usize];
+        if own.count == 0 {
+            (own.first, own.first_point) = (jobs[pass].len() as u32, next);
+        }
+        let owner = Patch::new(&prepared.passes[pass], patch);
+        for job in with_normal(job) {
+            jobs[pass].push([patch as u32, job]);
+            made.sums[level as usize] += owner.products(job);
+            own.count += 1;
+            next += 1;
+        }
+        made.ends[level as usize] = next;
+    }
+    for level in 1..made.ends.len() {
+        made.ends[level] = made.ends[level].max(made.ends[level - 1]);
+        made.sums[level] += made.sums[level - 1];
+    }
+    (jobs, places)
+}
+
+/// Each point once, and for each patch which these are that it needs. Points of the same hash are taken for the same; where that proves wrong, a patch has
+/// its own.
 fn shared(
     prepared: &Prepared,
     all: &[(usize, &Pass, usize)],
@@ -127,30 +141,45 @@ fn shared(
 ) -> (Vec<Owned>, Vec<Vec<u32>>) {
     let mut owned: Vec<Owned> = Vec::new();
     let mut known: FxHashMap<u64, u32> = FxHashMap::default();
-    let mut of_patch = |(&(pass, of, number), points): (&(usize, &Pass, usize), &PatchPoints)| {
-        let patch = Patch::new(of, number);
-        let number_of = |needed: &Needed| {
-            let own = Owned {
-                pass,
-                patch: number,
-                job: needed.job,
-                level: needed.level,
-            };
-            if let Some(&same) = known.get(&needed.hash) {
-                let other = &mut owned[same as usize];
-                let owner = Patch::new(&prepared.passes[other.pass], other.patch);
-                if patch.is_same(needed.job, owner, other.job) {
-                    other.level = other.level.min(needed.level);
-                    return same;
-                }
-            }
-            owned.push(own);
-            known.insert(needed.hash, owned.len() as u32 - 1);
-            owned.len() as u32 - 1
-        };
-        points.needed.iter().map(number_of).collect()
+    let own = |&(pass, _, patch): &(usize, &Pass, usize), needed: &Needed| Owned {
+        pass,
+        patch,
+        job: needed.job,
+        level: needed.level,
     };
-    let numbers = all.iter().zip(points).map(&mut of_patch).collect();
+    let mut numbers: Vec<Vec<u32>> = Vec::with_capacity(all.len());
+    for (patch, points) in all.iter().zip(points) {
+        let number_of = |needed: &Needed| {
+            let number = *known.entry(needed.hash).or_insert_with(|| {
+                owned.push(own(patch, needed));
+                owned.len() as u32 - 1
+            });
+            let level = &mut owned[number as usize].level;
+            *level = needed.level.min(*level);
+            number
+        };
+        numbers.push(points.needed.iter().map(number_of).collect());
+    }
+    let is_wrong = |of: &usize, place: &usize| {
+        let (_, pass, number) = all[*of];
+        let owner = &owned[numbers[*of][*place] as usize];
+        let other = Patch::new(&prepared.passes[owner.pass], owner.patch);
+        let job = points[*of].needed[*place].job;
+        !Patch::new(pass, number).is_same(job, other, owner.job)
+    };
+    let wrong: Vec<(usize, usize)> = (0..all.len())
+        .into_par_iter()
+        .flat_map_iter(|of| {
+            let places = 0..numbers[of].len();
+            places
+                .filter(move |place| is_wrong(&of, place))
+                .map(move |place| (of, place))
+        })
+        .collect();
+    for (of, place) in wrong {
+        numbers[of][place] = owned.len() as u32;
+        owned.push(own(&all[of], &points[of].needed[place]));
+    }
     (owned, numbers)
 }
 
@@ -275,9 +304,14 @@ impl<'a> Patch<'a> {
             }
             let counts = levels.iter().map(|&level| self.count(level, number));
             let counts: Vec<u32> = counts.collect();
+            let vertices: Vertices = self.of(number).vertices().collect();
             for row in 0..counts.last().copied().unwrap_or(0) {
                 let level = counts.partition_point(|&count| count <= row) as u32;
-                points.push(self, job(abi::JOB_STENCIL, number, row), level);
+                let job = job(abi::JOB_STENCIL, number, row);
+                let mut hasher = FxHasher::default();
+                self.terms(number, row, &vertices, |term| term.hash(&mut hasher));
+                let hash = hasher.finish();
+                points.needed.push(Needed { hash, job, level });
                 points.places.push((points.needed.len() as u32 - 1, false));
             }
         }
@@ -291,18 +325,17 @@ impl<'a> Patch<'a> {
         points
     }
 
+    /// Of a vertex, or of a corner.
     fn hash(self, job: u32) -> u64 {
         let mut hasher = FxHasher::default();
         let (kind, number, row) = parts(job);
         kind.hash(&mut hasher);
-        match kind {
-            abi::JOB_VERTEX => self.vertex(row).hash(&mut hasher),
-            abi::JOB_LIMIT => {
-                let of = self.of(number);
-                self.corner_key(number).hash(&mut hasher);
-                of.vertices().for_each(|vertex| vertex.hash(&mut hasher));
-            }
-            _ => self.terms(number, row, |term| term.hash(&mut hasher)),
+        if kind == abi::JOB_VERTEX {
+            self.vertex(row).hash(&mut hasher);
+        } else {
+            self.corner_key(number).hash(&mut hasher);
+            let of = self.of(number);
+            of.vertices().for_each(|vertex| vertex.hash(&mut hasher));
         }
         hasher.finish()
     }
@@ -320,9 +353,8 @@ impl<'a> Patch<'a> {
 
     /// What a point is a sum of, after the vertex that it is relative to, in the order in which it is added. Long sums are compensated: what is
     /// added to them counts even if it is zero.
-    fn terms(self, number: usize, row: u32, mut each: impl FnMut((u32, u32))) {
+    fn terms(self, number: usize, row: u32, vertices: &[u32], mut each: impl FnMut((u32, u32))) {
         let of = self.of(number);
-        let vertices: smallvec::SmallVec<[u32; 32]> = of.vertices().collect();
         let (origin, weights) = of.stencil(row);
         let place = match origin {
             abi::STENCIL_OWN => None,
@@ -352,11 +384,17 @@ impl<'a> Patch<'a> {
                 same_pass && same && of.vertices().eq(others.vertices())
             }
             _ => {
-                let mut terms: smallvec::SmallVec<[(u32, u32); 64]> = smallvec::SmallVec::new();
-                self.terms(number, row, |term| terms.push(term));
-                let mut at = 0;
-                let mut same = true;
-                other.terms(its_number, its_row, |term| {
+                if std::ptr::eq(self.pass, other.pass)
+                    && (self.number, job) == (other.number, others)
+                {
+                    return true;
+                }
+                let mut terms: SmallVec<[(u32, u32); 64]> = SmallVec::new();
+                let vertices: Vertices = self.of(number).vertices().collect();
+                self.terms(number, row, &vertices, |term| terms.push(term));
+                let (mut at, mut same) = (0, true);
+                let vertices: Vertices = other.of(its_number).vertices().collect();
+                other.terms(its_number, its_row, &vertices, |term| {
                     same &= terms.get(at) == Some(&term);
                     at += 1;
                 });

@@ -15,13 +15,10 @@ struct Levels {
 // Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge, so that both have a vertex in the middle and all
 // vertices line up: 2k and k with equal spacing, 4k and 2k with fractional-even (Brainerd et al. 2016, section 7.2).
 Levels patch_levels(uint number, Patch record) {
-#ifndef STAGE_COMPUTE
-    // A cache has the points of the cut's own level, whatever the frame decides.
     if ((frame.flags & FRAME_ADAPTIVE) != 0u) {
         PatchDraw draw = draws[min(number, frame.end_patch - 1u)];
         return Levels(draw.edges, draw.inside);
     }
-#endif
     float level = clamp(frame.level, 1.0, 64.0);
     bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
     precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);

@@ -39,11 +39,6 @@ vec3 control_point(Patch record, uint number) {
 #endif
 
 #if defined(STAGE_COMPUTE) || (defined(STAGE_CONTROL) && !defined(CACHED_POINTS))
-#define INVOCATION gl_InvocationID
-// Where the points of a use end in the slot, and where the slot does.
-uint points_end(Patch record, uint level, uint number) { return borders[border_of(record)].ends[min(level, HIGHEST_LEVEL)][number]; }
-uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
-
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
 #ifdef STAGE_COMPUTE
@@ -187,6 +182,10 @@ vec3 vertex_normal(Patch record, uint number) {
 }
 
 #ifdef STAGE_CONTROL
+// Where the points of a use end in the slot, and where the slot does.
+uint points_end(Patch record, uint level, uint number) { return borders[border_of(record)].ends[min(level, HIGHEST_LEVEL)][number]; }
+uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
+
 // The parts of a slot: the heads, the plain vertices from USES on, the points of each use's plan.
 struct Parts {
     uint plain_end;
@@ -235,16 +234,16 @@ vec4 use_head(Patch record, Parts parts, uint number) {
 // these are short, and if all went through them together most would wait most of the time.
 void run_stencils(Patch record, uint slot, uint level, uint count) {
     Parts parts = find_parts(record, level);
-    if (INVOCATION < USES && count > 0u) scratch[slot + INVOCATION] = use_head(record, parts, INVOCATION);
+    if (gl_InvocationID < USES && count > 0u) scratch[slot + gl_InvocationID] = use_head(record, parts, gl_InvocationID);
     uint plain = borders[border_of(record)].plain - USES;
-    for (uint next = USES + INVOCATION; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
+    for (uint next = USES + gl_InvocationID; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
         scratch[slot + next].xyz = ring_point(record, control_at(plain + next));
     }
     Ring inside = use_ring(record, 0u, min(parts.ends[0] - parts.plain_end, count));
-    for (uint next = parts.plain_end + INVOCATION; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
+    for (uint next = parts.plain_end + gl_InvocationID; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
         scratch[slot + next].xyz = stencil_point(record, inside, next - parts.plain_end);
     }
-    for (uint next = parts.ends[0] + INVOCATION; next < count; next += CONTROL_INVOCATIONS) {
+    for (uint next = parts.ends[0] + gl_InvocationID; next < count; next += CONTROL_INVOCATIONS) {
         Part part = find_part(parts, next);
         Ring ring = use_ring(record, part.number, min(part.end - part.start, count));
         bool is_normal = part.number >= 5u && next > part.start;
@@ -252,7 +251,7 @@ void run_stencils(Patch record, uint slot, uint level, uint count) {
         vec3 point = stencil_point(record, ring, next - part.start);
         if (!is_normal) scratch[slot + next].xyz = point;
     }
-    for (uint number = 5u + INVOCATION; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
+    for (uint number = 5u + gl_InvocationID; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
         uint place = parts.ends[number - 1u] + 1u;
         if (place < min(parts.ends[number], count)) scratch[slot + place].xyz = vertex_normal(record, number);
     }

@@ -59,7 +59,7 @@ impl Cut {
     }
 
     /// The cut at which a cache has the control points of a plan level.
-    pub fn of_plan_level(level: u32) -> Cut {
+    fn of_plan_level(level: u32) -> Cut {
         Cut {
             level: (1u32 << level.min(6)) as f32,
             spacing: Spacing::Equal,

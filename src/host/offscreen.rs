@@ -44,12 +44,10 @@ impl Area {
         }
     }
 
-    fn rect(self) -> vk::Rect2D {
+    /// Images of this part alone.
+    fn of_images(self) -> vk::Rect2D {
         vk::Rect2D {
-            offset: vk::Offset2D {
-                x: self.x as i32,
-                y: self.y as i32,
-            },
+            offset: vk::Offset2D::default(),
             extent: vk::Extent2D {
                 width: self.width,
                 height: self.height,
@@ -103,6 +101,26 @@ impl OffscreenTarget {
         samples: u32,
         encoding: Encoding,
     ) -> Result<OffscreenTarget> {
+        let whole = Area {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        };
+        OffscreenTarget::confined(device, [width, height], whole, samples, encoding)
+    }
+
+    /// A picture of `[width, height]` of which only a part is drawn at first, as after [`confine`](Self::confine).
+    ///
+    /// # Errors
+    /// As [`OffscreenTarget::new`].
+    pub fn confined(
+        device: &Device,
+        [width, height]: [u32; 2],
+        area: Area,
+        samples: u32,
+        encoding: Encoding,
+    ) -> Result<OffscreenTarget> {
         check_size(device.limits(), width, height)?;
         let formats = Formats {
             // Both are colour attachments on every device (Vulkan, "Required Format Support").
@@ -114,24 +132,20 @@ impl OffscreenTarget {
             samples: check_samples(device.limits(), samples)?,
         };
         // Null handles until made: if a step fails, what was made before it goes with `target`.
+        let extent = vk::Extent2D { width, height };
         let mut target = OffscreenTarget {
             device: device.clone(),
-            extent: vk::Extent2D { width, height },
-            area: Area {
-                x: 0,
-                y: 0,
-                width,
-                height,
-            },
+            extent,
+            area: area.within(extent),
             formats,
             render_pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
             images: Vec::new(),
             pixels: None,
         };
-        target.make_images()?;
-        target.make_framebuffer()?;
-        target.make_pixels()?;
+        // SAFETY: the device is live; formats and samples were checked against its limits.
+        target.render_pass = unsafe { render_pass::create(device.raw(), formats) }?;
+        target.make()?;
         Ok(target)
     }
 
@@ -160,10 +174,15 @@ impl OffscreenTarget {
         self.area
     }
 
-    /// Draws only a part from now on, where all that is to be seen lies: nothing else is cleared, resolved and copied, and memory beside it
-    /// is not touched. What lies there has the very pixels that it has in the whole.
-    pub fn confine(&mut self, area: Area) {
+    /// Draws only a part from now on, where all that is to be seen lies: there are images of that part alone. What lies there is seen as in the
+    /// whole, but for the rounding of where a vertex falls. Pipelines for the target stay what they are.
+    ///
+    /// # Errors
+    /// Vulkan's own. Then nothing can be drawn before another call succeeds.
+    pub fn confine(&mut self, area: Area) -> Result<()> {
         self.area = area.within(self.extent);
+        self.free();
+        self.make()
     }
 
     /// Begins the render pass: in the [`area`](Self::area) colour becomes `clear` (linear, whatever the encoding), depth 1. The viewport covers
@@ -183,13 +202,15 @@ impl OffscreenTarget {
                 depth_stencil: depth,
             },
         ];
-        let area = self.area.rect();
+        let area = self.area.of_images();
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(self.render_pass)
             .framebuffer(self.framebuffer)
             .render_area(area)
             .clear_values(&clears);
         let viewport = vk::Viewport::default()
+            .x(-(self.area.x as f32))
+            .y(-(self.area.y as f32))
             .width(self.extent.width as f32)
             .height(self.extent.height as f32)
             .max_depth(1.0);
@@ -224,12 +245,7 @@ impl OffscreenTarget {
                     .aspect_mask(vk::ImageAspectFlags::COLOR)
                     .layer_count(1),
             )
-            .image_offset(vk::Offset3D {
-                x: self.area.x as i32,
-                y: self.area.y as i32,
-                z: 0,
-            })
-            .image_extent(self.area.rect().extent.into());
+            .image_extent(self.area.of_images().extent.into());
         // To the host, and to the next copy into the same buffer.
         let written = vk::BufferMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
@@ -278,6 +294,33 @@ impl OffscreenTarget {
         &self.images[if self.formats.resolves() { 2 } else { 0 }]
     }
 
+    /// Images, framebuffer and pixels of the area.
+    fn make(&mut self) -> Result<()> {
+        self.make_images()?;
+        self.make_framebuffer()?;
+        self.make_pixels()
+    }
+
+    /// Gives them back.
+    fn free(&mut self) {
+        let device = self.device.raw();
+        let mut allocator = self.device.allocator();
+        // SAFETY: all of it was made from this device; the device waits for each submission, so nothing is in use.
+        unsafe {
+            device.destroy_framebuffer(std::mem::take(&mut self.framebuffer), None);
+            for image in self.images.drain(..) {
+                device.destroy_image_view(image.view, None);
+                device.destroy_image(image.raw, None);
+                if let Some(allocation) = image.allocation {
+                    free(&mut allocator, allocation);
+                }
+            }
+            if let Some(pixels) = self.pixels.take() {
+                pixels.destroy(device, &mut allocator);
+            }
+        }
+    }
+
     fn make_images(&mut self) -> Result<()> {
         use vk::ImageUsageFlags as Usage;
         let Formats {
@@ -314,7 +357,7 @@ impl OffscreenTarget {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
-            .extent(self.extent.into())
+            .extent(self.area.of_images().extent.into())
             .mip_levels(1)
             .array_layers(1)
             .samples(samples)
@@ -324,14 +367,12 @@ impl OffscreenTarget {
 
     fn make_framebuffer(&mut self) -> Result<()> {
         let device = self.device.raw();
-        // SAFETY: the device is live; formats and samples were checked against its limits.
-        self.render_pass = unsafe { render_pass::create(device, self.formats) }?;
         let views: Vec<_> = self.images.iter().map(|image| image.view).collect();
         let info = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
             .attachments(&views)
-            .width(self.extent.width)
-            .height(self.extent.height)
+            .width(self.area.width)
+            .height(self.area.height)
             .layers(1);
         // SAFETY: the views are of this device, in the order and of the formats that the pass declares.
         self.framebuffer = unsafe { device.create_framebuffer(&info, None) }
@@ -340,7 +381,7 @@ impl OffscreenTarget {
     }
 
     fn make_pixels(&mut self) -> Result<()> {
-        let size = u64::from(self.extent.width) * u64::from(self.extent.height) * 4;
+        let size = u64::from(self.area.width) * u64::from(self.area.height) * 4;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let location = MemoryLocation::GpuToCpu;
         let mut allocator = self.device.allocator();
@@ -358,23 +399,13 @@ impl Drop for OffscreenTarget {
         if self.device.is_hung() {
             return;
         }
-        let device = self.device.raw();
-        let mut allocator = self.device.allocator();
-        // SAFETY: all of it was made from this device; the device waits for each submission, so nothing is in use.
+        self.free();
+        // SAFETY: it was made from this device, and nothing is in use.
         unsafe {
-            device.destroy_framebuffer(self.framebuffer, None);
-            device.destroy_render_pass(self.render_pass, None);
-            for image in self.images.drain(..) {
-                device.destroy_image_view(image.view, None);
-                device.destroy_image(image.raw, None);
-                if let Some(allocation) = image.allocation {
-                    free(&mut allocator, allocation);
-                }
-            }
-            if let Some(pixels) = self.pixels.take() {
-                pixels.destroy(device, &mut allocator);
-            }
-        }
+            self.device
+                .raw()
+                .destroy_render_pass(self.render_pass, None)
+        };
     }
 }
 

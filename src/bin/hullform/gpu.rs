@@ -1,8 +1,9 @@
 //! The device that a subcommand works with, and the validation layer's verdict at the end.
 
 use crate::options::Global;
+use crate::pipelines::{self, Kept};
 use hullform::gpu::Workaround;
-use hullform::host::{Device, Instance};
+use hullform::host::{Bench, Device, Instance, OffscreenTarget};
 use hullform::{Error, Result};
 
 /// An open device and the driver workarounds to apply on it.
@@ -11,6 +12,7 @@ pub struct Gpu {
     pub device: Device,
     /// What to work around; nothing with `--no-workarounds`.
     pub workarounds: Vec<&'static Workaround>,
+    pipelines: Option<Kept>,
     instance: Instance,
 }
 
@@ -24,15 +26,25 @@ impl Gpu {
         } else {
             device.info().workarounds.clone()
         };
+        let folder = pipelines::folder(global.pipeline_cache.as_deref());
+        let kept = folder.map(|folder| Kept::open(&device, &folder));
         Ok(Gpu {
+            pipelines: kept.transpose()?,
             device,
             workarounds,
             instance,
         })
     }
 
-    /// Closes the device and refuses the results if the validation layer had anything to say, up to the device's end.
+    /// A bench that draws into `target`, whose pipelines are kept from run to run.
+    pub fn bench(&self, target: OffscreenTarget) -> Result<Bench> {
+        let kept = self.pipelines.as_ref().map(Kept::cache);
+        Ok(Bench::new(target)?.with_cache(kept))
+    }
+
+    /// Keeps the pipelines, closes the device and refuses the results if the validation layer had anything to say, up to the device's end.
     pub fn finish(self) -> Result<()> {
+        self.pipelines.map_or(Ok(()), Kept::keep)?;
         drop(self.device);
         check(&self.instance)
     }

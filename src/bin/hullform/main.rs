@@ -16,6 +16,7 @@ mod manual;
 mod model;
 mod options;
 mod output;
+mod pipelines;
 mod plan;
 mod progress;
 mod refused;

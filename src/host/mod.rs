@@ -10,6 +10,7 @@ mod owned;
 mod render_pass;
 mod statistics;
 mod storage_set;
+mod swapchain;
 mod timestamps;
 
 pub use bench::{Bench, Frame, Loaded, Shot, Style, vertex_bits, vertex_key};
@@ -21,4 +22,5 @@ pub use offscreen::{Area, Encoding, OffscreenTarget};
 pub use owned::{Destroy, Owned};
 pub use statistics::StatisticsQuery;
 pub(crate) use storage_set::StorageSet;
+pub use swapchain::{Image, Pacing, Shown, Swapchain, WindowSurface};
 pub use timestamps::TimestampQuery;

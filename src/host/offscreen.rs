@@ -103,13 +103,28 @@ impl OffscreenTarget {
         samples: u32,
         encoding: Encoding,
     ) -> Result<OffscreenTarget> {
+        let format = match encoding {
+            Encoding::Srgb => vk::Format::R8G8B8A8_SRGB,
+            Encoding::Unorm => vk::Format::R8G8B8A8_UNORM,
+        };
+        OffscreenTarget::with_format(device, width, height, samples, format)
+    }
+
+    /// A picture in a format of 4 bytes a pixel that every device draws to (Vulkan, "Required Format Support"): `R8G8B8A8`, `B8G8R8A8` or
+    /// `A8B8G8R8`, `SRGB` or `UNORM`. For copies to images of such a format.
+    ///
+    /// # Errors
+    /// As [`OffscreenTarget::new`].
+    pub fn with_format(
+        device: &Device,
+        width: u32,
+        height: u32,
+        samples: u32,
+        format: vk::Format,
+    ) -> Result<OffscreenTarget> {
         check_size(device.limits(), width, height)?;
         let formats = Formats {
-            // Both are colour attachments on every device (Vulkan, "Required Format Support").
-            colour: match encoding {
-                Encoding::Srgb => vk::Format::R8G8B8A8_SRGB,
-                Encoding::Unorm => vk::Format::R8G8B8A8_UNORM,
-            },
+            colour: format,
             depth: depth_format(device),
             samples: check_samples(device.limits(), samples)?,
         };
@@ -143,6 +158,12 @@ impl OffscreenTarget {
     /// The render pass; pipelines are made for its subpass 0.
     pub fn render_pass(&self) -> vk::RenderPass {
         self.render_pass
+    }
+
+    /// The image that has the picture when the pass has ended, one sample a pixel, in the layout `TRANSFER_SRC_OPTIMAL`, to be copied by later
+    /// commands of the same queue: the pass makes its writes visible to copies, and the next pass waits for these.
+    pub fn image(&self) -> vk::Image {
+        self.picture().raw
     }
 
     /// Samples a pixel, for the pipeline's multisample state.
@@ -262,7 +283,7 @@ impl OffscreenTarget {
         }
     }
 
-    /// What was copied last, the [`area`](Self::area) alone: RGBA, 8 bits each, rows from the top. Unspecified before the first copy.
+    /// What was copied last, the [`area`](Self::area) alone: 8 bits a channel in the format's order (RGBA, unless another was asked for), rows from the top. Unspecified before the first copy.
     pub fn read_pixels(&self) -> &[u8] {
         let Area { width, height, .. } = self.area;
         &self.pixels().bytes()[..4 * width as usize * height as usize]

@@ -6,6 +6,7 @@ use hullform::host::{Device, Instance};
 use hullform::{Error, Result};
 
 /// An open device and the driver workarounds to apply on it.
+#[derive(Clone)]
 pub struct Gpu {
     /// The device.
     pub device: Device,
@@ -19,16 +20,27 @@ impl Gpu {
     pub fn open(global: &Global) -> Result<Gpu> {
         let instance = Instance::new(global.validation)?;
         let device = Device::open(&instance, global.device.as_deref())?;
+        Ok(Gpu::of(instance, device, global))
+    }
+
+    /// A device that has been opened.
+    pub fn of(instance: Instance, device: Device, global: &Global) -> Gpu {
         let workarounds = if global.no_workarounds {
             Vec::new()
         } else {
             device.info().workarounds.clone()
         };
-        Ok(Gpu {
+        Gpu {
             device,
             workarounds,
             instance,
-        })
+        }
+    }
+
+    /// Its instance.
+    #[cfg(feature = "view")]
+    pub fn instance(&self) -> &Instance {
+        &self.instance
     }
 
     /// Closes the device and refuses the results if the validation layer had anything to say, up to the device's end.

@@ -17,7 +17,7 @@ use std::str::FromStr;
 pub use steps::{Backend, Residence, Steps};
 
 /// Options of every subcommand.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Global {
     /// Vulkan device: its index or a part of its name [default: the first discrete GPU that will do, else any]
     #[arg(long, global = true, value_name = "INDEX|NAME", value_parser = device)]
@@ -125,7 +125,7 @@ impl From<Spacing> for hullform::tessellation::Spacing {
 }
 
 /// Which surface a model has: options of all subcommands that load one.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Shape {
     /// Subdivision scheme: catmull-clark, loop, butterfly, loop-stam or bilinear [default: what the file's name begins with
     /// (`loop_`, `bilinear_`, `catmark_`), else catmull-clark]

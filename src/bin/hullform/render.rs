@@ -388,7 +388,7 @@ fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
 }
 
 /// Bumps as high as a share of the model's diagonal, a few dozen of them along it.
-fn bumps(model: &Model, share: f32) -> Displacement {
+pub fn bumps(model: &Model, share: f32) -> Displacement {
     let diagonal = model.diagonal() as f32;
     Displacement {
         height: share * diagonal,

@@ -130,6 +130,8 @@ pub struct Swapchain {
     /// Null while the window has no area.
     raw: vk::SwapchainKHR,
     images: Vec<(vk::Image, vk::ImageView)>,
+    /// Whether images can be copied elsewhere.
+    readable: bool,
     /// Whether the images must be made anew before the next frame.
     stale: bool,
     pool: vk::CommandPool,
@@ -168,6 +170,7 @@ impl Swapchain {
             extent: vk::Extent2D::default(),
             raw: vk::SwapchainKHR::null(),
             images: Vec::new(),
+            readable: false,
             stale: true,
             pool: vk::CommandPool::null(),
             cmd: vk::CommandBuffer::null(),
@@ -264,6 +267,7 @@ impl Swapchain {
         self.destroy_views();
         let old = std::mem::take(&mut self.raw);
         self.extent = extent(&able, size);
+        self.readable = able.supported_usage_flags.contains(vk::ImageUsageFlags::TRANSFER_SRC);
         let made = if self.extent.width == 0 || self.extent.height == 0 {
             Ok(vk::SwapchainKHR::null())
         } else {
@@ -434,6 +438,11 @@ impl Swapchain {
         }
     }
 
+    /// Whether images can be copied elsewhere.
+    pub fn can_be_read(&self) -> bool {
+        self.readable
+    }
+
     fn create(
         &self,
         able: &vk::SurfaceCapabilitiesKHR,
@@ -444,7 +453,7 @@ impl Swapchain {
             0 => u32::MAX,
             most => most,
         };
-        let wanted = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_DST;
+        let usage = usage(able.supported_usage_flags)?;
         let alpha = [
             vk::CompositeAlphaFlagsKHR::OPAQUE,
             vk::CompositeAlphaFlagsKHR::INHERIT,
@@ -461,7 +470,7 @@ impl Swapchain {
             .image_color_space(self.format.color_space)
             .image_extent(self.extent)
             .image_array_layers(1)
-            .image_usage(wanted & able.supported_usage_flags)
+            .image_usage(usage)
             .image_sharing_mode(vk::SharingMode::EXCLUSIVE)
             .pre_transform(able.current_transform)
             .composite_alpha(alpha.unwrap_or(vk::CompositeAlphaFlagsKHR::OPAQUE))
@@ -591,6 +600,17 @@ fn choose(formats: &[vk::SurfaceFormatKHR]) -> Result<vk::SurfaceFormatKHR> {
             names.join(", ")
         ))
     })
+}
+
+/// What images are used for: drawn to, copied to, and where the display allows it copied from.
+fn usage(able: vk::ImageUsageFlags) -> Result<vk::ImageUsageFlags> {
+    let needed = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_DST;
+    if !able.contains(needed) {
+        return Err(Error::NoDisplay(format!(
+            "the display's images can be used for {able:?} alone, not for {needed:?}"
+        )));
+    }
+    Ok(needed | able & vk::ImageUsageFlags::TRANSFER_SRC)
 }
 
 /// The size that images must have, or the window's own where the window system leaves it to us.

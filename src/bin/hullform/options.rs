@@ -1,5 +1,6 @@
 //! Options that several subcommands share, and how their values are read.
 
+mod standpoint;
 mod steps;
 
 use crate::adaptive::Adaptive;
@@ -14,6 +15,7 @@ use hullform::method::{
 use std::path::PathBuf;
 use std::str::FromStr;
 
+pub use standpoint::{Cull, Standpoint};
 pub use steps::{Backend, Residence, Steps};
 
 /// Options of every subcommand.

@@ -218,6 +218,7 @@ impl Open {
         if self.program.canvas.is_stale() || self.program.canvas.size() != size {
             self.program.resize(size)?;
         }
+        self.program.take_shot()?;
         self.program.take()?;
         self.pass_time();
         let input = self.input.take_egui_input(&self.window);
@@ -239,7 +240,7 @@ impl Open {
             self.program.egui.request_repaint_after(SETTLED);
         }
         let moving = self.program.viewer.is_moving() && outcome.shown != Shown::Hidden;
-        self.wanted |= moving;
+        self.wanted |= moving || self.program.canvas.is_shooting();
         let mut soon = delay.filter(|delay| *delay < Duration::from_secs(60));
         if !self.program.busy().is_empty() {
             soon = Some(soon.map_or(PROGRESS, |delay| delay.min(PROGRESS)));

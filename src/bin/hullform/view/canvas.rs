@@ -6,6 +6,8 @@ use hullform::ash;
 use hullform::host::{Device, Image, OffscreenTarget, Pacing, Shown, Swapchain, WindowSurface};
 use hullform::{Error, Result};
 
+use super::picture::swizzled;
+use super::shot::Shot;
 use super::viewport::Area;
 
 /// Behind everything, where nothing else is.
@@ -34,6 +36,8 @@ pub struct Canvas {
     pool: vk::CommandPool,
     target: Option<OffscreenTarget>,
     samples: u32,
+    /// A picture of the window that was asked for.
+    shot: Option<Shot>,
     /// Textures that egui has given up, and that the last frame may still show.
     unused: Vec<egui::TextureId>,
     swapchain: Swapchain,
@@ -56,6 +60,7 @@ impl Canvas {
             pool: vk::CommandPool::null(),
             target: None,
             samples,
+            shot: None,
             unused: Vec::new(),
             swapchain,
             device: device.clone(),
@@ -124,6 +129,7 @@ impl Canvas {
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.swapchain.wait()?;
         self.destroy_framebuffers();
+        self.shot = None;
         self.swapchain.resize(size)?;
         self.make_images()
     }
@@ -139,7 +145,7 @@ impl Canvas {
         let (Some(target), Some(renderer)) = (&self.target, &mut self.panels) else {
             return Ok(Shown::Hidden);
         };
-        let (device, pass) = (self.device.raw(), self.pass);
+        let (device, pass, shot) = (self.device.raw(), self.pass, self.shot.as_ref());
         let framebuffers = &self.framebuffers;
         self.swapchain.frame(|cmd, image| {
             if let Some(scene) = scene {
@@ -151,10 +157,37 @@ impl Canvas {
                 cmd_begin(device, cmd, pass, framebuffers[image.number], image.extent);
             }
             let drawn = renderer.cmd_draw(cmd, image.extent, panels.scale, &panels.primitives);
-            // SAFETY: inside the pass that began above.
-            unsafe { device.cmd_end_render_pass(cmd) };
+            // SAFETY: inside the pass that began above, which leaves the image to the display.
+            unsafe {
+                device.cmd_end_render_pass(cmd);
+                if let Some(shot) = shot.filter(|shot| shot.fits(image.extent)) {
+                    shot.cmd_take(device, cmd, image);
+                }
+            }
             drawn.map_err(of_panels)
         })
+    }
+
+    /// Has the next frame taken as a picture; whether the display allows it.
+    pub fn shoot(&mut self) -> Result<bool> {
+        let extent = self.swapchain.extent();
+        if !self.swapchain.can_be_read() || extent.width == 0 || extent.height == 0 {
+            return Ok(false);
+        }
+        self.shot = Some(Shot::new(&self.device, extent)?);
+        Ok(true)
+    }
+
+    /// The picture that was taken, RGBA with its size; once its frame is done.
+    pub fn take_shot(&mut self) -> Option<([u32; 2], Vec<u8>)> {
+        let shot = self.shot.take()?;
+        let pixels = swizzled(shot.bytes(), self.swapchain.format());
+        Some((self.size(), pixels))
+    }
+
+    /// Whether one is under way.
+    pub fn is_shooting(&self) -> bool {
+        self.shot.is_some()
     }
 
     /// Brings egui's textures to the device, and gives those back that no frame shows any more.
@@ -279,6 +312,7 @@ impl Drop for Canvas {
             return;
         }
         self.panels = None;
+        self.shot = None;
         self.destroy_framebuffers();
         // SAFETY: ours, and in no use any more.
         unsafe {

@@ -5,6 +5,8 @@ mod app;
 #[cfg(feature = "view")]
 mod canvas;
 #[cfg(feature = "view")]
+mod clipboard;
+#[cfg(feature = "view")]
 mod command;
 #[cfg(feature = "view")]
 mod context;
@@ -27,6 +29,8 @@ mod panels;
 #[cfg(feature = "view")]
 mod part;
 #[cfg(feature = "view")]
+mod picture;
+#[cfg(feature = "view")]
 mod probe;
 #[cfg(feature = "view")]
 mod program;
@@ -34,6 +38,8 @@ mod program;
 mod readings;
 #[cfg(feature = "view")]
 mod selection;
+#[cfg(feature = "view")]
+mod shot;
 #[cfg(feature = "view")]
 mod stage;
 #[cfg(feature = "view")]

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use hullform::ash::vk;
 use hullform::gpu::{Backend, Cut, Residence};
 use hullform::mesh::Scheme;
 use hullform::method::METHODS;
@@ -19,6 +18,7 @@ use super::selection::Selection;
 use super::viewport::Area;
 use crate::adaptive::Adaptive;
 use crate::eye::Sphere;
+pub use crate::options::Cull;
 use crate::render::Shading;
 
 /// What is shown of a surface.
@@ -34,38 +34,6 @@ pub struct Look {
     pub numbers: bool,
     /// Bumps, as a share of the model's diagonal.
     pub displace: f32,
-}
-
-/// Which triangles are left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Cull {
-    /// None.
-    #[default]
-    None,
-    /// Those that are seen from behind.
-    Back,
-    /// Those that are seen from the front.
-    Front,
-}
-
-impl Cull {
-    /// As Vulkan has it.
-    pub fn mode(self) -> vk::CullModeFlags {
-        match self {
-            Cull::None => vk::CullModeFlags::NONE,
-            Cull::Back => vk::CullModeFlags::BACK,
-            Cull::Front => vk::CullModeFlags::FRONT,
-        }
-    }
-
-    /// In a word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Cull::None => "none",
-            Cull::Back => "back",
-            Cull::Front => "front",
-        }
-    }
 }
 
 /// How surfaces are cut.

@@ -1,5 +1,6 @@
 //! The rim: winit's events in, frames out. Everything else is in values that know nothing of windows.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -16,9 +17,11 @@ use winit::window::{Window, WindowId};
 use super::Arguments;
 use super::canvas::{Canvas, Panels};
 use super::context::Context;
+use super::log::Log;
 use super::program::Program;
+use super::settings::Settings;
 use super::viewer::Viewer;
-use super::workers::Workers;
+use super::workers::Wake;
 use crate::gpu::Gpu;
 use crate::options::Global;
 
@@ -77,6 +80,9 @@ struct Open {
     wanted: bool,
     /// When motion was advanced last.
     advanced: Instant,
+    log: Log,
+    /// Where settings are written in the end.
+    settings: Option<PathBuf>,
     instance: Instance,
     window: Arc<Window>,
 }
@@ -144,10 +150,14 @@ impl Open {
         events: &ActiveEventLoop,
         proxy: EventLoopProxy<Woken>,
     ) -> Result<Open> {
-        let size = arguments.size.map_or((1280, 800), |size| (size.width, size.height));
+        let file = super::settings::file().filter(|_| !arguments.fresh);
+        let settings = file.as_deref().map(Settings::read).unwrap_or_default();
+        let asked = arguments.size.map(|size| [size.width, size.height]);
+        let size = asked.or(settings.size).unwrap_or([1280, 800]);
+        let log = Log::new(arguments.log.as_deref())?;
         let attributes = Window::default_attributes()
             .with_title("hullform")
-            .with_inner_size(LogicalSize::new(size.0, size.1))
+            .with_inner_size(LogicalSize::new(size[0], size[1]))
             .with_min_inner_size(LogicalSize::new(320, 240));
         let window = events.create_window(attributes);
         let window = Arc::new(window.map_err(|error| no_display(&error.to_string()))?);
@@ -157,17 +167,20 @@ impl Open {
         let PhysicalSize { width, height } = window.inner_size();
         let canvas = Canvas::new(&gpu.device, surface, [width, height], samples(&gpu.device))?;
         let format = canvas.scene_format();
-        let context = Context::new(gpu, global, format, samples(canvas.device()), None)?;
-        let workers = Workers::new(Arc::new(move || {
+        let cache = super::settings::pipelines().filter(|_| !arguments.fresh);
+        let context = Context::new(gpu, global, format, samples(canvas.device()), cache)?;
+        let wake: Wake = Arc::new(move || {
             // The loop has ended when this fails.
             let _ = proxy.send_event(Woken);
-        }));
+        });
         let mut viewer = Viewer::default();
+        settings.apply(&mut viewer);
         match arguments.models.is_empty() {
             true => viewer.open([None]),
             false => viewer.open(arguments.models.iter().cloned().map(Some)),
         }
-        let program = Program::new(viewer, canvas, context, arguments.shape.clone(), workers)?;
+        let shape = arguments.shape.clone();
+        let program = Program::new(viewer, canvas, context, shape, wake)?;
         let input = egui_winit::State::new(
             program.egui.clone(),
             egui::ViewportId::ROOT,
@@ -183,6 +196,8 @@ impl Open {
             due: None,
             wanted: true,
             advanced: Instant::now(),
+            log,
+            settings: file,
             instance,
             window,
         })
@@ -220,6 +235,7 @@ impl Open {
         }
         self.program.take_shot()?;
         self.program.take()?;
+        self.program.read_off();
         self.pass_time();
         let input = self.input.take_egui_input(&self.window);
         let output = self.program.panels(input);
@@ -234,6 +250,8 @@ impl Open {
         }
         let outcome = self.program.show(&self.panels)?;
         self.panels.textures.clear();
+        let program = &self.program;
+        self.log.add(|| program.state());
         self.wanted |= matches!(outcome.shown, Shown::NotYet | Shown::WindowChanged);
         if outcome.scene {
             // What the scene cost is told by the next frame.
@@ -269,6 +287,15 @@ impl Open {
     }
 
     fn close(self) -> Result<()> {
+        let scale = self.window.scale_factor();
+        let size: LogicalSize<u32> = self.window.inner_size().to_logical(scale);
+        let size = Some([size.width, size.height]).filter(|size| !size.contains(&0));
+        if let Some(file) = &self.settings {
+            let settings = Settings::of_viewer(&self.program.viewer, size);
+            if let Err(error) = settings.write(file) {
+                tracing::warn!("{}: {error}; the window will not be as it was left", file.display());
+            }
+        }
         let Open {
             program, instance, ..
         } = self;

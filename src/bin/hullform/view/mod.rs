@@ -19,6 +19,8 @@ mod errors;
 #[cfg(feature = "view")]
 mod folder;
 #[cfg(feature = "view")]
+mod log;
+#[cfg(feature = "view")]
 mod notices;
 #[cfg(feature = "view")]
 mod orbit;
@@ -39,6 +41,8 @@ mod readings;
 #[cfg(feature = "view")]
 mod selection;
 #[cfg(feature = "view")]
+mod settings;
+#[cfg(feature = "view")]
 mod shot;
 #[cfg(feature = "view")]
 mod stage;
@@ -46,6 +50,8 @@ mod stage;
 mod viewer;
 #[cfg(feature = "view")]
 mod viewport;
+#[cfg(feature = "view")]
+mod watch;
 #[cfg(feature = "view")]
 mod workers;
 
@@ -66,6 +72,12 @@ pub struct Arguments {
     /// Size of the window in points [default: 1280x800, or as it was left]
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
+    /// Neither read nor write settings and pipelines of other times
+    #[arg(long)]
+    fresh: bool,
+    /// Write the window's state as JSON, a line a frame, for who drives it by script
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
 }
 
 /// Opens a window, and stays until it is closed.

@@ -1,28 +1,30 @@
 //! The program behind the window: it starts what is needed of what the viewer wants, takes what is ready, and draws what has changed.
 
-use std::path::Path;
+mod saves;
+mod start;
+mod state;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use hullform::host::{Shown, Style};
-use hullform::mesh::{ControlMesh, Model, Scheme};
+use hullform::host::Shown;
+use hullform::mesh::{ControlMesh, Model};
 use hullform::{Error, Result};
 
 use super::canvas::{Canvas, Panels};
 use super::clipboard::Clipboard;
-use super::context::{Context, Drawn, Key, under_scheme};
-use super::errors::{self, Legend, Measured, Subject};
+use super::context::{Context, Drawn, Key};
+use super::errors::{Legend, Measured, Subject};
 use super::overlay::Overlay;
 use super::panels::{self, Status};
-use super::part::{Part, Wanted};
-use super::picture;
+use super::part::Wanted;
 use super::probe::{Found, Ray};
 use super::readings::Readings;
 use super::stage::{Side, Stage, Staged};
 use super::viewer::{Viewer, Wish};
-use super::workers::Workers;
-use crate::model;
+use super::watch::{self, Watch};
+use super::workers::{Wake, Workers};
 use crate::options::Shape;
 
 /// What workers bring.
@@ -73,6 +75,7 @@ pub struct Program {
     pub(super) context: Arc<Context>,
     pub(super) workers: Workers<Done>,
     pub(super) shape: Shape,
+    watch: Watch,
     running: Running,
     failed: Failed,
     kept: Vec<Arc<Measured>>,
@@ -117,7 +120,7 @@ impl Program {
         canvas: Canvas,
         context: Context,
         shape: Shape,
-        workers: Workers<Done>,
+        wake: Wake,
     ) -> Result<Program> {
         let egui = egui::Context::default();
         panels::dress(&egui);
@@ -138,18 +141,31 @@ impl Program {
             viewer,
             canvas,
             shape,
-            workers,
+            watch: Watch::new(wake.clone()),
+            workers: Workers::new(wake),
         })
     }
 
     /// Takes what workers have brought, when nothing is drawn; whether there was anything.
     pub fn take(&mut self) -> Result<bool> {
+        self.take_changes();
         let done = self.workers.done();
         let any = !done.is_empty();
         for done in done {
             self.take_one(done)?;
         }
         Ok(any)
+    }
+
+    /// Has models read again whose files have changed.
+    fn take_changes(&mut self) {
+        let changed = self.watch.changed();
+        for part in &mut self.viewer.parts {
+            let place = part.file().and_then(watch::place);
+            part.unread |= place.is_some_and(|place| changed.contains(&place));
+        }
+        let files = self.viewer.parts.iter().filter_map(|part| part.file());
+        self.watch.look_after(files);
     }
 
     fn take_one(&mut self, done: Done) -> Result<()> {
@@ -255,179 +271,6 @@ impl Program {
                 Ok(())
             }
         }
-    }
-
-    /// Starts what is needed and not under way.
-    pub fn start(&mut self) -> Result<()> {
-        let numbers: Vec<u64> = self.viewer.parts.iter().map(Part::number).collect();
-        self.stage.parts.retain(|staged| numbers.contains(&staged.number));
-        self.deform();
-        for place in 0..self.viewer.parts.len() {
-            self.read(place)?;
-            self.build(place)?;
-        }
-        self.pipe()?;
-        self.measure()
-    }
-
-    /// Shows control vertices where edits and motion have them.
-    fn deform(&mut self) {
-        let deform = self.viewer.deform;
-        for part in &mut self.viewer.parts {
-            let Some(history) = part.history() else { continue };
-            let positions = history.draft().positions.clone();
-            let all = crate::eye::Sphere::around(positions.iter().copied());
-            part.show(deform.points(&positions, all));
-        }
-    }
-
-    fn read(&mut self, place: usize) -> Result<()> {
-        let part = &mut self.viewer.parts[place];
-        let number = part.number();
-        if !part.unread || self.running.read.contains(&number) {
-            return Ok(());
-        }
-        part.unread = false;
-        self.running.read.push(number);
-        let path = part.path().map(std::path::Path::to_path_buf);
-        let shape = self.shape.clone();
-        let work = move || model::load(path.as_deref(), &shape);
-        self.workers.start("read", work, move |result| Done::Read(number, result))
-    }
-
-    fn build(&mut self, place: usize) -> Result<()> {
-        let part = &self.viewer.parts[place];
-        let number = part.number();
-        let recipes = self.viewer.recipes();
-        let Some(wanted) = part.wanted(self.viewer.cutting.scheme, recipes) else {
-            return Ok(());
-        };
-        let same = |staged: &&Staged| staged.number == number && staged.wanted == wanted;
-        let is_there = self.stage.parts.iter().any(|staged| same(&staged));
-        let runs = self.running.built.iter().any(|(other, _)| *other == number);
-        let key = (number, wanted);
-        if is_there || runs || self.failed.built.contains(&key) {
-            return Ok(());
-        }
-        // Others of it may do now.
-        self.failed.built.retain(|(other, _)| *other != number);
-        let (_, wanted) = key.clone();
-        self.running.built.push(key);
-        let Some(history) = part.history() else { return Ok(()) };
-        let (draft, context) = (history.draft().clone(), self.context.clone());
-        let (how, styles) = (self.shape.triangulate, self.styles());
-        let asked = wanted.clone();
-        let work = move || {
-            let mesh = draft.mesh()?;
-            let scheme = asked.scheme.unwrap_or(mesh.options().scheme);
-            let model = Model::new(under_scheme(mesh, scheme, how)?);
-            let place = |&recipe| context.place(&model, recipe);
-            let sides = asked.recipes.iter().map(place).collect::<Result<Vec<Drawn>>>()?;
-            for (drawn, style) in sides.iter().flat_map(|d| styles.iter().map(move |s| (d, s))) {
-                let style = Style {
-                    backend: drawn.surface.options().backend,
-                    residence: drawn.surface.options().residence,
-                    ..*style
-                };
-                context.make(drawn.surface.prepared(), style)?;
-            }
-            Ok((Arc::new(model), sides))
-        };
-        let told = move |result| Done::Built(number, wanted, result);
-        self.workers.start("build", work, told)
-    }
-
-    /// How surfaces are drawn that are not there yet.
-    fn styles(&self) -> Vec<Style> {
-        let spacing = self.viewer.cutting.spacing;
-        let style = |fill| Style {
-            cull: self.viewer.cutting.cull.mode(),
-            ..Style::new(Default::default(), spacing, fill)
-        };
-        Stage::fills(&self.viewer).into_iter().map(style).collect()
-    }
-
-    fn pipe(&mut self) -> Result<()> {
-        for (part, side, style) in self.stage.missing(&self.viewer, &self.context) {
-            let drawn = &self.stage.parts[part].sides[side];
-            let key = drawn.key(style);
-            if self.running.piped.contains(&key) || self.failed.piped.contains(&key) {
-                continue;
-            }
-            self.running.piped.push(key.clone());
-            let (context, prepared) = (self.context.clone(), drawn.surface.prepared().clone());
-            let work = move || context.make(&prepared, style).map(drop);
-            let told = move |result| Done::Piped(key, result);
-            self.workers.start("pipelines", work, told)?;
-        }
-        Ok(())
-    }
-
-    /// What a measurement of a part's side would be of.
-    fn subject(&self, staged: &Staged, side: usize) -> Option<Subject> {
-        let part = self.viewer.parts.iter().find(|part| part.number() == staged.number)?;
-        Some(Subject {
-            part: staged.number,
-            version: staged.wanted.version,
-            moves: part.moves(),
-            scheme: staged.wanted.scheme,
-            recipe: *staged.wanted.recipes.get(side)?,
-            cut: self.viewer.cutting.cut(),
-            tags: None,
-        })
-    }
-
-    /// The measurement of a part's side, if it is there.
-    fn measured(&self, staged: &Staged, side: usize) -> Option<&Arc<Measured>> {
-        let subject = self.subject(staged, side)?;
-        self.kept.iter().find(|measured| measured.subject == subject)
-    }
-
-    /// Captures what a map or the cursor asks for, one after the other, when nothing moves.
-    fn measure(&mut self) -> Result<()> {
-        let asked = self.viewer.compare.map.is_some() || self.probe.is_some();
-        if !asked || self.viewer.is_moving() || self.running.measured.is_some() {
-            return Ok(());
-        }
-        let recipes = self.viewer.recipes().len();
-        let sides = self.stage.parts.iter().flat_map(|part| (0..recipes).map(move |i| (part, i)));
-        let wanted: Vec<(&Staged, usize)> = sides.collect();
-        for (staged, side) in wanted {
-            let Some(subject) = self.subject(staged, side) else { continue };
-            match self.kept.iter().find(|measured| measured.subject == subject) {
-                Some(measured) => {
-                    let mapped = self.viewer.compare.map.is_some();
-                    let free = self.running.compared.is_none();
-                    if mapped && free && measured.errors.get().is_none() {
-                        let measured = measured.clone();
-                        self.running.compared = Some(measured.clone());
-                        let work = move || {
-                            measured.compare();
-                            Ok(())
-                        };
-                        return self.workers.start("compare", work, Done::Compared);
-                    }
-                }
-                None if self.failed.measured.contains(&subject) => {}
-                None => return self.start_measure(subject),
-            }
-        }
-        Ok(())
-    }
-
-    fn start_measure(&mut self, subject: Subject) -> Result<()> {
-        let parts = &self.viewer.parts;
-        let part = parts.iter().find(|part| part.number() == subject.part);
-        let Some((part, history)) = part.and_then(|part| Some((part, part.history()?))) else {
-            return Ok(());
-        };
-        let mut draft = history.draft().clone();
-        draft.positions = Arc::new(part.points().to_vec());
-        self.running.measured = Some(subject.clone());
-        let (context, how, asked) = (self.context.clone(), self.shape.triangulate, subject.clone());
-        let work = move || errors::measure(&context, &draft, how, asked).map(Arc::new);
-        let told = move |result| Done::Measured(Box::new(subject), result);
-        self.workers.start("measure", work, told)
     }
 
     /// What is under the cursor.
@@ -635,74 +478,6 @@ impl Program {
         Ok(false)
     }
 
-    /// Saves the picture of the window that was taken, when its frame is done.
-    pub fn take_shot(&mut self) -> Result<()> {
-        let Some((size, pixels)) = self.canvas.take_shot() else {
-            return Ok(());
-        };
-        self.running.saved += 1;
-        let file = picture::free_name("hullform", "png");
-        let work = move || picture::save(&file, size, &pixels);
-        self.workers.start("save", work, Done::Saved)
-    }
-
-    fn words(&self, file: &Path) -> Vec<String> {
-        picture::words(&self.viewer, &self.shape, &self.context.global, file)
-    }
-
-    /// Has `render` draw what is seen.
-    fn render(&mut self) -> Result<()> {
-        let file = picture::free_name("hullform", "png");
-        let words = self.words(&file);
-        let scheme = self.viewer.cutting.scheme;
-        let history = self.viewer.parts.first().and_then(|part| part.history());
-        let Some(draft) = history.map(|history| history.draft().clone()) else {
-            return Ok(());
-        };
-        self.running.saved += 1;
-        let (context, how) = (self.context.clone(), self.shape.triangulate);
-        let work = move || picture::render(&context, &draft, how, scheme, &words, &file);
-        self.workers.start("render", work, Done::Saved)
-    }
-
-    fn copy(&mut self) {
-        let line = picture::line(&self.words(Path::new("hullform.png")));
-        let left_out = picture::left_out(&self.viewer);
-        let without = match left_out.is_empty() {
-            true => String::new(),
-            false => format!(" (without {})", left_out.join(", ")),
-        };
-        match self.clipboard.copy(&line) {
-            Ok(()) => self.viewer.notices.tell(format!("copied{without}: {line}")),
-            Err(words) => self.viewer.notices.tell(format!("{words}{without}: {line}")),
-        }
-        self.copied = Some(line);
-    }
-
-    /// Saves the model that is edited, beside its file under a name of its own.
-    fn save(&mut self) -> Result<()> {
-        let Some(part) = self.viewer.edited() else {
-            return Ok(());
-        };
-        let Some(draft) = part.history().map(|history| history.draft().clone()) else {
-            return Ok(());
-        };
-        let stem = part.file().and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
-        let stem = format!("{}-edited", stem.unwrap_or("hullform".into()));
-        // Names tell schemes: one that says another would be read as that.
-        let prefix = match draft.scheme() {
-            Scheme::CatmullClark => "",
-            scheme if Scheme::of_file(format!("{stem}.obj")) == Some(scheme) => "",
-            Scheme::Loop => "loop_",
-            Scheme::Bilinear => "bilinear_",
-            _ => "",
-        };
-        let file = picture::free_name(&format!("{prefix}{stem}"), "obj");
-        part.was_saved();
-        self.running.saved += 1;
-        let work = move || picture::save_model(&file, &draft);
-        self.workers.start("save", work, Done::Saved)
-    }
 }
 
 /// The side at a place of the picture (-1..1, y up), and the place in that side's own view.

@@ -1,13 +1,14 @@
 //! A picture to draw into without a window, and to read back.
 
 use crate::error::{Error, Result};
-use crate::gpu::memory::{free, out_of_memory};
+use crate::gpu::memory::free;
 use crate::gpu::{Buffer, failed};
 use crate::host::Device;
+use crate::host::area::Area;
+use crate::host::image::Image;
 use crate::host::render_pass::{self, Formats};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 /// What the bytes of a picture mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,39 +20,12 @@ pub enum Encoding {
     Unorm,
 }
 
-/// A part of a picture, in pixels from its left upper corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Area {
-    /// Its left side.
-    pub x: u32,
-    /// Its upper side.
-    pub y: u32,
-    /// Its width.
-    pub width: u32,
-    /// Its height.
-    pub height: u32,
-}
-
-impl Area {
-    /// What of it lies in a picture of this size; one pixel where nothing does.
-    fn within(self, extent: vk::Extent2D) -> Area {
-        let (x, y) = (self.x.min(extent.width - 1), self.y.min(extent.height - 1));
-        Area {
-            x,
-            y,
-            width: self.width.clamp(1, extent.width - x),
-            height: self.height.clamp(1, extent.height - y),
-        }
-    }
-
-    /// Images of this part alone.
-    fn of_images(self) -> vk::Rect2D {
-        vk::Rect2D {
-            offset: vk::Offset2D::default(),
-            extent: vk::Extent2D {
-                width: self.width,
-                height: self.height,
-            },
+impl Encoding {
+    /// A format of it that every device draws to (Vulkan, "Required Format Support").
+    pub fn format(self) -> vk::Format {
+        match self {
+            Encoding::Srgb => vk::Format::R8G8B8A8_SRGB,
+            Encoding::Unorm => vk::Format::R8G8B8A8_UNORM,
         }
     }
 }
@@ -64,6 +38,9 @@ impl Area {
 pub struct OffscreenTarget {
     device: Device,
     extent: vk::Extent2D,
+    /// What there are images of.
+    part: Area,
+    /// What is drawn of that.
     area: Area,
     formats: Formats,
     render_pass: vk::RenderPass,
@@ -71,14 +48,6 @@ pub struct OffscreenTarget {
     /// Colour, depth, and with several samples the resolved colour, as the render pass numbers them.
     images: Vec<Image>,
     pixels: Option<Buffer>,
-}
-
-/// An image with its memory and view; null until made.
-#[derive(Default)]
-struct Image {
-    raw: vk::Image,
-    view: vk::ImageView,
-    allocation: Option<Allocation>,
 }
 
 impl OffscreenTarget {
@@ -101,33 +70,39 @@ impl OffscreenTarget {
         samples: u32,
         encoding: Encoding,
     ) -> Result<OffscreenTarget> {
-        let whole = Area {
-            x: 0,
-            y: 0,
-            width,
-            height,
-        };
-        OffscreenTarget::confined(device, [width, height], whole, samples, encoding)
+        OffscreenTarget::with_format(device, width, height, samples, encoding.format())
     }
 
-    /// A picture of `[width, height]` of which only a part is drawn at first, as after [`confine`](Self::confine).
+    /// A picture in a format of 4 bytes a pixel that every device draws to (Vulkan, "Required Format Support"): `R8G8B8A8`, `B8G8R8A8` or
+    /// `A8B8G8R8`, `SRGB` or `UNORM`. For copies to images of such a format.
     ///
     /// # Errors
     /// As [`OffscreenTarget::new`].
-    pub fn confined(
+    pub fn with_format(
+        device: &Device,
+        width: u32,
+        height: u32,
+        samples: u32,
+        format: vk::Format,
+    ) -> Result<OffscreenTarget> {
+        let whole = Area::whole([width, height]);
+        OffscreenTarget::cropped(device, [width, height], whole, samples, format)
+    }
+
+    /// The same picture, of which there are images of a part alone, as after [`crop`](Self::crop).
+    ///
+    /// # Errors
+    /// As [`OffscreenTarget::new`].
+    pub fn cropped(
         device: &Device,
         [width, height]: [u32; 2],
-        area: Area,
+        part: Area,
         samples: u32,
-        encoding: Encoding,
+        format: vk::Format,
     ) -> Result<OffscreenTarget> {
         check_size(device.limits(), width, height)?;
         let formats = Formats {
-            // Both are colour attachments on every device (Vulkan, "Required Format Support").
-            colour: match encoding {
-                Encoding::Srgb => vk::Format::R8G8B8A8_SRGB,
-                Encoding::Unorm => vk::Format::R8G8B8A8_UNORM,
-            },
+            colour: format,
             depth: depth_format(device),
             samples: check_samples(device.limits(), samples)?,
         };
@@ -136,7 +111,8 @@ impl OffscreenTarget {
         let mut target = OffscreenTarget {
             device: device.clone(),
             extent,
-            area: area.within(extent),
+            part: part.within(Area::whole([width, height])),
+            area: part.within(Area::whole([width, height])),
             formats,
             render_pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
@@ -159,6 +135,12 @@ impl OffscreenTarget {
         self.render_pass
     }
 
+    /// The image that has the picture when the pass has ended, one sample a pixel, in the layout `TRANSFER_SRC_OPTIMAL`, to be copied by later
+    /// commands of the same queue: the pass makes its writes visible to copies, and the next pass waits for these.
+    pub fn image(&self) -> vk::Image {
+        self.picture().raw
+    }
+
     /// Samples a pixel, for the pipeline's multisample state.
     pub fn samples(&self) -> vk::SampleCountFlags {
         self.formats.samples
@@ -174,13 +156,20 @@ impl OffscreenTarget {
         self.area
     }
 
-    /// Draws only a part from now on, where all that is to be seen lies: there are images of that part alone. What lies there is seen as in the
-    /// whole, but for the rounding of where a vertex falls. Pipelines for the target stay what they are.
+    /// Draws only a part from now on, where all that is to be seen lies: nothing else is cleared, resolved and copied, and memory beside it
+    /// is not touched. What lies there has the very pixels that it has in the whole.
+    pub fn confine(&mut self, area: Area) {
+        self.area = area.within(self.part);
+    }
+
+    /// Makes images of a part alone, and draws that from now on; small images are cleared at once by drivers that clear parts of large ones slowly.
+    /// What lies there is seen as in the whole, but for the rounding of where a vertex falls. Pipelines for the target stay what they are.
     ///
     /// # Errors
     /// Vulkan's own. Then nothing can be drawn before another call succeeds.
-    pub fn confine(&mut self, area: Area) -> Result<()> {
-        self.area = area.within(self.extent);
+    pub fn crop(&mut self, part: Area) -> Result<()> {
+        self.part = part.within(Area::whole([self.extent.width, self.extent.height]));
+        self.area = self.part;
         self.free();
         self.make()
     }
@@ -202,15 +191,15 @@ impl OffscreenTarget {
                 depth_stencil: depth,
             },
         ];
-        let area = self.area.of_images();
+        let area = self.area.rect(self.part);
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(self.render_pass)
             .framebuffer(self.framebuffer)
             .render_area(area)
             .clear_values(&clears);
         let viewport = vk::Viewport::default()
-            .x(-(self.area.x as f32))
-            .y(-(self.area.y as f32))
+            .x(-(self.part.x as f32))
+            .y(-(self.part.y as f32))
             .width(self.extent.width as f32)
             .height(self.extent.height as f32)
             .max_depth(1.0);
@@ -245,7 +234,12 @@ impl OffscreenTarget {
                     .aspect_mask(vk::ImageAspectFlags::COLOR)
                     .layer_count(1),
             )
-            .image_extent(self.area.of_images().extent.into());
+            .image_offset(vk::Offset3D {
+                x: (self.area.x - self.part.x) as i32,
+                y: (self.area.y - self.part.y) as i32,
+                z: 0,
+            })
+            .image_extent(self.area.extent().into());
         // To the host, and to the next copy into the same buffer.
         let written = vk::BufferMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
@@ -278,7 +272,7 @@ impl OffscreenTarget {
         }
     }
 
-    /// What was copied last, the [`area`](Self::area) alone: RGBA, 8 bits each, rows from the top. Unspecified before the first copy.
+    /// What was copied last, the [`area`](Self::area) alone: 8 bits a channel in the format's order (RGBA, unless another was asked for), rows from the top. Unspecified before the first copy.
     pub fn read_pixels(&self) -> &[u8] {
         let Area { width, height, .. } = self.area;
         &self.pixels().bytes()[..4 * width as usize * height as usize]
@@ -294,7 +288,7 @@ impl OffscreenTarget {
         &self.images[if self.formats.resolves() { 2 } else { 0 }]
     }
 
-    /// Images, framebuffer and pixels of the area.
+    /// Images, framebuffer and pixels of the part.
     fn make(&mut self) -> Result<()> {
         self.make_images()?;
         self.make_framebuffer()?;
@@ -357,7 +351,7 @@ impl OffscreenTarget {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
-            .extent(self.area.of_images().extent.into())
+            .extent(self.part.extent().into())
             .mip_levels(1)
             .array_layers(1)
             .samples(samples)
@@ -371,8 +365,8 @@ impl OffscreenTarget {
         let info = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
             .attachments(&views)
-            .width(self.area.width)
-            .height(self.area.height)
+            .width(self.part.width)
+            .height(self.part.height)
             .layers(1);
         // SAFETY: the views are of this device, in the order and of the formats that the pass declares.
         self.framebuffer = unsafe { device.create_framebuffer(&info, None) }
@@ -381,7 +375,7 @@ impl OffscreenTarget {
     }
 
     fn make_pixels(&mut self) -> Result<()> {
-        let size = u64::from(self.area.width) * u64::from(self.area.height) * 4;
+        let size = u64::from(self.part.width) * u64::from(self.part.height) * 4;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let location = MemoryLocation::GpuToCpu;
         let mut allocator = self.device.allocator();
@@ -406,55 +400,6 @@ impl Drop for OffscreenTarget {
                 .raw()
                 .destroy_render_pass(self.render_pass, None)
         };
-    }
-}
-
-impl Image {
-    fn make(&mut self, device: &Device, name: &str, info: &vk::ImageCreateInfo<'_>) -> Result<()> {
-        let raw = device.raw();
-        // SAFETY: the device is live; size, format and samples were checked against its limits.
-        self.raw = unsafe { raw.create_image(info, None) }.map_err(failed("vkCreateImage"))?;
-        let request = AllocationCreateDesc {
-            name,
-            // SAFETY: the image was just made from this device.
-            requirements: unsafe { raw.get_image_memory_requirements(self.raw) },
-            location: MemoryLocation::GpuOnly,
-            linear: false,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        };
-        let allocation = device.allocator().allocate(&request);
-        let allocation = self.allocation.insert(allocation.map_err(out_of_memory)?);
-        let (memory, offset) = {
-            // SAFETY: the memory is bound to nothing else and outlives the image.
-            (unsafe { allocation.memory() }, allocation.offset())
-        };
-        // SAFETY: size, alignment and memory type come from the image's own requirements; the image is unbound.
-        unsafe { raw.bind_image_memory(self.raw, memory, offset) }
-            .map_err(failed("vkBindImageMemory"))?;
-        self.make_view(raw, info)
-    }
-
-    fn make_view(&mut self, device: &ash::Device, info: &vk::ImageCreateInfo<'_>) -> Result<()> {
-        let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-        let aspect = if info.usage.contains(depth) {
-            vk::ImageAspectFlags::DEPTH
-        } else {
-            vk::ImageAspectFlags::COLOR
-        };
-        let view = vk::ImageViewCreateInfo::default()
-            .image(self.raw)
-            .view_type(vk::ImageViewType::TYPE_2D)
-            .format(info.format)
-            .subresource_range(
-                vk::ImageSubresourceRange::default()
-                    .aspect_mask(aspect)
-                    .level_count(1)
-                    .layer_count(1),
-            );
-        // SAFETY: the image is of this device and bound to memory; format and aspect are its own.
-        self.view = unsafe { device.create_image_view(&view, None) }
-            .map_err(failed("vkCreateImageView"))?;
-        Ok(())
     }
 }
 

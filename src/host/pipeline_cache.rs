@@ -64,6 +64,9 @@ impl PipelineCache {
 
 impl Drop for PipelineCache {
     fn drop(&mut self) {
+        if self.device.is_hung() {
+            return;
+        }
         // SAFETY: it was made from this device; caches are used by nothing but calls that have returned.
         unsafe { self.device.raw().destroy_pipeline_cache(self.raw, None) };
     }

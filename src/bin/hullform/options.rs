@@ -1,5 +1,6 @@
 //! Options that several subcommands share, and how their values are read.
 
+mod standpoint;
 mod steps;
 
 use crate::adaptive::Adaptive;
@@ -14,10 +15,11 @@ use hullform::method::{
 use std::path::PathBuf;
 use std::str::FromStr;
 
+pub use standpoint::{Cull, Standpoint};
 pub use steps::{Backend, Residence, Steps};
 
 /// Options of every subcommand.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Global {
     /// Vulkan device: its index or a part of its name [default: the first discrete GPU that will do, else any]
     #[arg(long, global = true, value_name = "INDEX|NAME", value_parser = device)]
@@ -128,7 +130,7 @@ impl From<Spacing> for hullform::tessellation::Spacing {
 }
 
 /// Which surface a model has: options of all subcommands that load one.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Shape {
     /// Subdivision scheme: catmull-clark, loop, butterfly, loop-stam or bilinear [default: what the file's name begins with
     /// (`loop_`, `bilinear_`, `catmark_`), else catmull-clark]

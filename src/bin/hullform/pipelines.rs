@@ -3,13 +3,13 @@
 //! It is there to save time, so nothing about its files makes a run fail: what cannot be read is built anew, and what cannot be written is said in the log.
 
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
-use std::{env, fs, io};
+use std::sync::Arc;
+use std::{fs, io};
 
 use hullform::Result;
 use hullform::host::{Device, PipelineCache};
 
-use crate::output;
+use crate::{output, places};
 
 /// What files begin with; then comes a check sum of the rest, which is the driver's.
 const MAGIC: &[u8] = b"hullform pipelines 1\n";
@@ -18,25 +18,20 @@ const MAGIC: &[u8] = b"hullform pipelines 1\n";
 const MOST: u64 = 256 << 20;
 
 /// A cache with the file that it comes from and goes to.
+#[derive(Clone)]
 pub struct Kept {
-    cache: Rc<PipelineCache>,
+    cache: Arc<PipelineCache>,
     path: PathBuf,
     /// What the file holds.
     loaded: Vec<u8>,
 }
 
-/// Where caches are kept: in the folder of the option, in none at all if that is `none`, and without it where programs of a user keep what can be
-/// made anew (XDG Base Directory Specification).
+/// Where caches are kept: in the folder of the option, in none at all if that is `none`, and without it where all of a user's are.
 pub fn folder(option: Option<&Path>) -> Option<PathBuf> {
     match option {
         Some(none) if none == Path::new("none") => None,
         Some(folder) => Some(folder.into()),
-        None => {
-            let absolute =
-                |name| Some(PathBuf::from(env::var_os(name)?)).filter(|path| path.is_absolute());
-            let home = || absolute("HOME").map(|home| home.join(".cache"));
-            Some(absolute("XDG_CACHE_HOME").or_else(home)?.join("hullform"))
-        }
+        None => places::caches(),
     }
 }
 
@@ -53,22 +48,22 @@ impl Kept {
         // SAFETY: the check sum says that they are what a driver gave.
         let cache = unsafe { PipelineCache::new(device, &loaded) }?;
         Ok(Kept {
-            cache: Rc::new(cache),
+            cache: Arc::new(cache),
             path,
             loaded,
         })
     }
 
     /// The cache, for benches.
-    pub fn cache(&self) -> Rc<PipelineCache> {
+    pub fn cache(&self) -> Arc<PipelineCache> {
         self.cache.clone()
     }
 
     /// Writes what is new in it.
-    pub fn keep(self) -> Result<()> {
+    pub fn keep(&self) -> Result<()> {
         let data = self.cache.data()?;
         if data != self.loaded
-            && let Err(problem) = write(&self.path, &data)
+            && let Err(problem) = output::replace(&self.path, &closed(&data))
         {
             tracing::info!("{}: {problem}; pipelines are not kept", self.path.display());
         }
@@ -84,11 +79,6 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
     opened(&bytes)
         .map(<[u8]>::to_vec)
         .ok_or_else(|| io::Error::other("damaged, or not ours"))
-}
-
-fn write(path: &Path, data: &[u8]) -> io::Result<()> {
-    path.parent().map_or(Ok(()), fs::create_dir_all)?;
-    output::replace(path, &closed(data))
 }
 
 /// A file's bytes.

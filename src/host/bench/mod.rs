@@ -4,6 +4,7 @@ mod loaded;
 
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use ash::vk;
 
@@ -23,7 +24,7 @@ pub struct Bench {
     device: Device,
     target: OffscreenTarget,
     layout: Owned<Layout>,
-    cache: Option<Rc<PipelineCache>>,
+    cache: Option<Arc<PipelineCache>>,
     pipelines: RefCell<Vec<(Key, Rc<Owned<Pipelines>>)>>,
     statistics: Option<StatisticsQuery>,
 }
@@ -98,7 +99,7 @@ impl Bench {
     }
 
     /// The same, where pipelines are built with what a cache of its device holds, and are added to it.
-    pub fn with_cache(self, cache: Option<Rc<PipelineCache>>) -> Bench {
+    pub fn with_cache(self, cache: Option<Arc<PipelineCache>>) -> Bench {
         Bench { cache, ..self }
     }
 

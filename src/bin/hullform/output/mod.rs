@@ -15,6 +15,7 @@ pub use temporary::remove_unfinished;
 
 use hullform::error::visible;
 use hullform::{Error, Result};
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use temporary::Temporary;
@@ -26,9 +27,10 @@ pub fn wrote(path: &Path) -> String {
     format!("wrote {}", visible(&whole.to_string_lossy()))
 }
 
-/// Puts a file with these bytes into the place of what is there: whoever looks sees all of the one or all of the other.
+/// Puts a file with these bytes into the place of what is there, in a folder that is made: whoever looks sees all of the one or all of the other.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder)?;
     let temporary = Temporary::new(folder)?;
     let mut file = temporary.file();
     file.write_all(bytes)?;

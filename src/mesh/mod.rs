@@ -2,9 +2,11 @@
 
 mod builtin;
 mod control_mesh;
+mod creased_edges;
 mod model;
 mod obj;
 mod placement;
+pub(crate) mod places;
 mod scheme;
 pub mod sharpness;
 mod suitable;

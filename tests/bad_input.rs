@@ -332,7 +332,7 @@ fn everything_valid_is_read() {
     assert_eq!(texture.indices[..7], [3, 2, 1, 0, 0, 1, 2]);
 }
 
-/// What `tobj` alone would change: order of vertices, isolated ones, groups, weights, colours, precision.
+/// What readers for drawing change: order of vertices, isolated ones, groups, weights, colours, precision.
 #[test]
 fn the_file_s_own_numbers() {
     let mesh = read(

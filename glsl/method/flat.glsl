@@ -12,12 +12,12 @@ const uint CONTROL_POINTS = 4u;
 #define CONTROL_VERTICES 4
 
 #ifdef STAGE_VERTEX
-// Point i is the mean of some control vertices; four words tell where each point's end.
+// Point i is the mean of some control vertices; two words tell where each point's begin and end.
 vec3 control_point(Patch record, uint number) {
-    uint start = number == 0u ? 4u : control_at(record.controls + number - 1u);
-    uint end = control_at(record.controls + number);
+    uint start = control_at(record.controls + 2u * number);
+    uint end = control_at(record.controls + 2u * number + 1u);
     vec3 sum = vec3(0.0);
-    for (uint i = start; i < end; ++i) sum += control_vertex(control_at(record.controls + i));
+    for (uint i = start; i < end; ++i) sum += control_vertex(control_at(i));
     return sum / float(end - start);
 }
 #endif

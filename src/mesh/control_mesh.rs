@@ -1,9 +1,11 @@
 //! The control mesh: positions, faces and the tags that shape their limit surface.
 
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 
 use crate::error::{Error, Place, Result};
 use crate::mesh::Scheme;
+use crate::mesh::creased_edges::CreasedEdges;
 use crate::mesh::placement::{Placement, bounds};
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
@@ -116,19 +118,11 @@ impl ControlMesh {
         face_sizes: &[u32],
         face_vertices: &[u32],
     ) -> ControlMeshBuilder {
-        ControlMeshBuilder {
-            face_sizes: face_sizes.to_vec(),
-            mesh: ControlMesh {
-                positions: positions.iter().copied().map(DVec3::from).collect(),
-                face_offsets: Vec::new(),
-                face_vertices: face_vertices.to_vec(),
-                creases: Vec::new(),
-                corners: Vec::new(),
-                holes: Vec::new(),
-                texture: None,
-                options: SchemeOptions::default(),
-            },
-        }
+        ControlMeshBuilder::of_parts(
+            positions.iter().copied().map(DVec3::from).collect(),
+            face_sizes.to_vec(),
+            face_vertices.to_vec(),
+        )
     }
 
     /// The vertices' positions, as given.
@@ -242,6 +236,27 @@ impl ControlMesh {
 }
 
 impl ControlMeshBuilder {
+    /// Starts a mesh as [`ControlMesh::builder`] does, from what need not be copied.
+    pub(super) fn of_parts(
+        positions: Vec<DVec3>,
+        face_sizes: Vec<u32>,
+        face_vertices: Vec<u32>,
+    ) -> ControlMeshBuilder {
+        ControlMeshBuilder {
+            face_sizes,
+            mesh: ControlMesh {
+                positions,
+                face_offsets: Vec::new(),
+                face_vertices,
+                creases: Vec::new(),
+                corners: Vec::new(),
+                holes: Vec::new(),
+                texture: None,
+                options: SchemeOptions::default(),
+            },
+        }
+    }
+
     /// Makes the edge `a`-`b` a crease. Sharpness 0 or more; 10 or more is infinite.
     pub fn crease(mut self, a: u32, b: u32, sharpness: f32) -> Self {
         self.mesh.creases.push(Crease {
@@ -333,6 +348,11 @@ pub(crate) const GREATEST_COORDINATE: f64 = 1e300;
 pub(crate) const GREATEST_TEXTURE_COORDINATE: f64 = 1e30;
 
 fn check_positions(mesh: &ControlMesh) -> Result<()> {
+    // Not a number is not within bounds either.
+    let is_fine = |p: &DVec3| p.abs().cmple(DVec3::splat(GREATEST_COORDINATE)).all();
+    if mesh.positions.iter().all(is_fine) {
+        return Ok(());
+    }
     let refused = |vertex: usize, problem: &str, remedy: &str| {
         let problem = format!("its position {} {problem}", mesh.positions[vertex]);
         Err(Error::input(Place::Vertex(vertex), problem, remedy))
@@ -373,12 +393,10 @@ fn check_faces(mesh: &ControlMesh) -> Result<()> {
                 "vertex indices must be below the number of vertices",
             ));
         }
-        let mut sorted = face.to_vec();
-        sorted.sort_unstable();
-        if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        if let Some(vertex) = named_twice(face) {
             return Err(Error::input(
                 place(),
-                format!("it names vertex {} twice", pair[0]),
+                format!("it names vertex {vertex} twice"),
                 "remove the repeated vertex, or split the face",
             ));
         }
@@ -386,16 +404,47 @@ fn check_faces(mesh: &ControlMesh) -> Result<()> {
     Ok(())
 }
 
+/// The least vertex that a face names more than once.
+fn named_twice(face: &[u32]) -> Option<u32> {
+    if let &[a, b, c, d] = face
+        && a != b
+        && a != c
+        && a != d
+        && b != c
+        && b != d
+        && c != d
+    {
+        return None;
+    }
+    let mut sorted: SmallVec<[u32; 16]> = face.into();
+    sorted.sort_unstable();
+    let twice = sorted.windows(2).find(|pair| pair[0] == pair[1])?;
+    Some(twice[0])
+}
+
+/// The edges that creases of a mesh name.
+pub(super) fn creased_edges(mesh: &ControlMesh) -> CreasedEdges {
+    let ends = mesh.creases.iter().map(|crease| crease.vertices);
+    CreasedEdges::new(mesh.vertex_count(), ends)
+}
+
 fn check_tags(mesh: &ControlMesh) -> Result<()> {
-    let edges: std::collections::HashSet<[u32; 2]> = mesh
-        .faces()
-        .flat_map(|face| (0..face.len()).map(|i| [face[i], face[(i + 1) % face.len()]]))
-        .map(ordered)
-        .collect();
+    let edges = creased_edges(mesh);
+    let mut met = vec![false; edges.count()];
+    if !met.is_empty() {
+        for face in mesh.faces() {
+            for (i, &vertex) in face.iter().enumerate() {
+                let next = face[if i + 1 < face.len() { i + 1 } else { 0 }];
+                if let Some(edge) = edges.number([vertex, next]) {
+                    met[edge] = true;
+                }
+            }
+        }
+    }
     for crease in &mesh.creases {
         let [a, b] = crease.vertices;
         let place = Place::Edge(a as usize, b as usize);
-        if !edges.contains(&ordered(crease.vertices)) {
+        if !edges.number(crease.vertices).is_some_and(|edge| met[edge]) {
             return Err(Error::input(
                 place,
                 "a crease names it, but no face has this edge",
@@ -473,9 +522,4 @@ fn check_texture(mesh: &ControlMesh) -> Result<()> {
         problem,
         "give one texture coordinate of at most 1e30 for every face corner",
     ))
-}
-
-/// The two vertices of an edge, the lesser first.
-pub(crate) fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
-    if a < b { [a, b] } else { [b, a] }
 }

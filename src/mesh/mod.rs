@@ -2,9 +2,12 @@
 
 mod builtin;
 mod control_mesh;
+mod creased_edges;
 mod model;
 mod obj;
 mod placement;
+pub(crate) mod places;
+mod replicate;
 mod scheme;
 pub mod sharpness;
 mod suitable;
@@ -19,5 +22,6 @@ pub use control_mesh::{
 pub use model::Model;
 pub use obj::{read_obj, read_obj_bytes};
 pub use placement::Placement;
+pub use replicate::replicated;
 pub use scheme::Scheme;
 pub use triangulate::{Triangulation, triangulated};

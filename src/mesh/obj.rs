@@ -1,22 +1,26 @@
 //! OBJ with subdivision tags.
 //!
-//! `tobj` reads the format, and a scan of the same text gives what `tobj` leaves out: the number of the line for every
-//! message, the `t` tags, and the file's own numbering. `tobj` numbers vertices by their first use and splits the file
-//! by group and material. The scan therefore hands it only the `v`, `vt` and `f` statements, and [`in_file_order`]
-//! puts one polygon before them that uses every vertex in order.
+//! The text is gone through once. Lines of the kinds that a file nearly always consists of are read straight from its bytes ([`plain`]); any other is
+//! first made a statement ([`lines`]) and then read word by word ([`scan`], [`tags`]). Which line something stands on is looked up again where a message
+//! needs it, instead of being kept for every vertex and face.
+//!
+//! `tobj`, which numbers vertices by their first use, splits files by group and material, and knows no tags, is a witness instead: it reads all models
+//! too, and must agree (`tests/obj_witness.rs`).
 
 mod file;
 mod lines;
+mod plain;
 mod scan;
 mod tags;
 
 use std::path::Path;
 
 use crate::error::{Error, Place, Result};
-use crate::mesh::control_mesh::{GREATEST_COORDINATE, GREATEST_TEXTURE_COORDINATE};
+use crate::mesh::control_mesh::{
+    ControlMeshBuilder, GREATEST_COORDINATE, GREATEST_TEXTURE_COORDINATE,
+};
 use crate::mesh::{ControlMesh, FaceVarying};
-use glam::DVec2;
-use lines::Line;
+use lines::{Cursor, Line};
 use scan::Scan;
 
 /// Reads an OBJ file with its subdivision tags.
@@ -44,20 +48,9 @@ pub fn read_obj(path: &Path) -> Result<ControlMesh> {
 /// # Errors
 /// [`Error::Input`] with file and line for text that has no meaning.
 pub fn read_obj_bytes(name: &str, bytes: &[u8]) -> Result<ControlMesh> {
-    let scan = Scan::new(name, text_of(name, bytes)?)?;
-    let geometry = in_file_order(&scan);
-    let options = tobj::LoadOptions::default();
-    let (models, _) = tobj::load_obj_buf(&mut geometry.as_bytes(), &options, |_| {
-        Ok(Default::default())
-    })
-    .map_err(|error| disagreement(Place::File(name.to_string()), error.to_string()))?;
-    match models.as_slice() {
-        [model] => assemble(name, &scan, &model.mesh),
-        models => Err(disagreement(
-            Place::File(name.to_string()),
-            format!("it finds {} models instead of one", models.len()),
-        )),
-    }
+    let text = text_of(name, bytes)?;
+    let scan = Scan::new(name, text)?;
+    assemble(name, text, scan)
 }
 
 /// What follows the mark of UTF-8 that some editors put before a text.
@@ -75,117 +68,80 @@ fn text_of<'a>(name: &str, mut bytes: &'a [u8]) -> Result<&'a [u8]> {
     Ok(bytes)
 }
 
-/// The statements for `tobj`, after a polygon that uses all vertices and texture coordinates in the order of the file.
-fn in_file_order(scan: &Scan) -> String {
-    let (vertices, textures) = (scan.vertices, scan.textures);
-    let mut text = String::from("f");
-    for number in 1..=opening_size(scan) {
-        text.push_str(&match textures {
-            0 => format!(" {number}"),
-            _ => format!(" {}/{}", number.min(vertices), number.min(textures)),
-        });
-    }
-    text.push('\n');
-    text + &scan.geometry
-}
-
-fn opening_size(scan: &Scan) -> usize {
-    scan.vertices.max(scan.textures)
-}
-
-fn assemble(name: &str, scan: &Scan, read: &tobj::Mesh) -> Result<ControlMesh> {
-    let opening = opening_size(scan);
-    let (positions, _) = read.positions.as_chunks::<3>();
-    let indices = read.indices.get(opening..).unwrap_or_default();
-    let sizes = face_sizes(name, scan, read)?;
-    if positions.len() != scan.vertices {
-        let problem = format!("it finds {} vertices", positions.len());
-        return Err(disagreement(Place::File(name.to_string()), problem));
-    }
-    check_range(name, scan, read)?;
-    let mut builder = ControlMesh::builder(positions, sizes, indices).options(scan.tags.options);
-    for &(_, crease) in &scan.tags.creases {
+fn assemble(name: &str, text: &[u8], scan: Scan) -> Result<ControlMesh> {
+    check_range(name, text, &scan)?;
+    let Scan {
+        positions,
+        textures,
+        face_sizes,
+        face_vertices,
+        face_textures,
+        textured,
+        tags,
+        ..
+    } = scan;
+    let faces = face_sizes.len();
+    let mut builder = ControlMeshBuilder::of_parts(positions, face_sizes, face_vertices);
+    builder = builder.options(tags.options);
+    for &(_, crease) in &tags.creases {
         builder = builder.crease(crease.vertices[0], crease.vertices[1], crease.sharpness);
     }
-    for &(_, corner) in &scan.tags.corners {
+    for &(_, corner) in &tags.corners {
         builder = builder.corner(corner.vertex, corner.sharpness);
     }
-    for &(_, hole) in &scan.tags.holes {
+    for &(_, hole) in &tags.holes {
         builder = builder.hole(hole);
     }
-    if scan.textured {
-        let (values, _) = read.texcoords.as_chunks::<2>();
+    if textured {
         builder = builder.texture(FaceVarying {
-            values: values.iter().copied().map(DVec2::from).collect(),
-            indices: read
-                .texcoord_indices
-                .get(opening..)
-                .unwrap_or_default()
-                .to_vec(),
+            values: textures,
+            indices: face_textures,
         });
     }
-    builder
-        .build()
-        .map_err(|error| with_line(name, scan, error))
+    let line_of = |place: &Place| match *place {
+        Place::Face(face) if face < faces => Some(line_of_statement(text, "f", face)),
+        _ => tags.line_of(place),
+    };
+    let built = builder.build();
+    built.map_err(|error| with_line(name, line_of, error))
 }
 
 /// Refuses what [`ControlMesh`] would refuse too, by the line where it stands.
-fn check_range(name: &str, scan: &Scan, read: &tobj::Mesh) -> Result<()> {
-    let used = |indices: &[u32], values: &[f64], width: usize, greatest: f64| {
-        let faces = indices.get(opening_size(scan)..).unwrap_or_default();
-        let is_large = |&&index: &&u32| {
-            let value = &values[width * index as usize..][..width];
-            value.iter().any(|x| x.abs() > greatest)
-        };
-        faces.iter().find(is_large).map(|&index| index as usize)
-    };
-    let at = |number: usize, problem: &str, remedy: &str| {
+fn check_range(name: &str, text: &[u8], scan: &Scan) -> Result<()> {
+    let at = |keyword: &str, index: u32, problem: &str, remedy: &str| {
+        let number = line_of_statement(text, keyword, index as usize);
         Err(Line { file: name, number }.error(problem, remedy))
     };
-    if let Some(vertex) = used(&read.indices, &read.positions, 3, GREATEST_COORDINATE) {
+    let is_large = |&&vertex: &&u32| {
+        let position = scan.positions[vertex as usize];
+        position.abs().max_element() > GREATEST_COORDINATE
+    };
+    if let Some(&vertex) = scan.face_vertices.iter().find(is_large) {
         return at(
-            scan.vertex_lines[vertex],
+            "v",
+            vertex,
             "a coordinate is beyond what double precision can calculate with",
             "coordinates go up to 1e300: scale the mesh down",
         );
     }
-    let greatest = GREATEST_TEXTURE_COORDINATE;
-    let texture = || used(&read.texcoord_indices, &read.texcoords, 2, greatest);
-    match scan.textured.then(texture).flatten() {
+    let is_large = |&&texture: &&u32| {
+        let value = scan.textures[texture as usize];
+        value.abs().max_element() > GREATEST_TEXTURE_COORDINATE
+    };
+    let mut used = scan.face_textures.iter();
+    match used.find(is_large).filter(|_| scan.textured) {
         None => Ok(()),
-        Some(texture) => at(
-            scan.texture_lines[texture],
+        Some(&texture) => at(
+            "vt",
+            texture,
             "a texture coordinate is beyond what single precision can interpolate",
             "texture coordinates go up to 1e30",
         ),
     }
 }
 
-/// The arity of each face as `tobj` read it, compared with what the scan counted.
-fn face_sizes<'a>(name: &str, scan: &'a Scan, read: &tobj::Mesh) -> Result<&'a [u32]> {
-    // No arities at all is how `tobj` says that everything is a triangle, the opening polygon too.
-    let read_sizes = match read.face_arities.as_slice() {
-        [] => vec![3; scan.face_sizes.len()],
-        [_, sizes @ ..] => sizes.to_vec(),
-    };
-    if read_sizes == scan.face_sizes {
-        return Ok(&scan.face_sizes);
-    }
-    let first = scan
-        .face_sizes
-        .iter()
-        .zip(&read_sizes)
-        .position(|(scanned, read)| scanned != read);
-    let place = match first {
-        Some(face) => Place::Line(name.to_string(), scan.face_lines[face]),
-        None => Place::File(name.to_string()),
-    };
-    let problem = format!("it finds {} faces of other sizes", read_sizes.len());
-    Err(disagreement(place, problem))
-}
-
 /// Puts the line in front of what [`ControlMesh`] says about a face, a vertex or an edge.
-fn with_line(name: &str, scan: &Scan, error: Error) -> Error {
+fn with_line(name: &str, line_of: impl Fn(&Place) -> Option<usize>, error: Error) -> Error {
     let Error::Input {
         ref place,
         ref problem,
@@ -194,16 +150,24 @@ fn with_line(name: &str, scan: &Scan, error: Error) -> Error {
     else {
         return error;
     };
-    match scan.line_of(place) {
+    match line_of(place) {
         Some(number) => Line { file: name, number }.error(format!("{place}: {problem}"), remedy),
         None => error.in_file(name),
     }
 }
 
-fn disagreement(place: Place, problem: String) -> Error {
-    Error::input(
-        place,
-        format!("the OBJ parser reads this differently: {problem}"),
-        "please report this file as a bug of hullform",
-    )
+/// The line of the statement of this number, counted from 0, among those that begin with a word; the last line if there are fewer.
+fn line_of_statement(text: &[u8], keyword: &str, index: usize) -> usize {
+    let mut cursor = Cursor::new("", text);
+    let mut left = index;
+    while let Some(statement) = cursor.statement() {
+        let text = String::from_utf8_lossy(&statement.text);
+        if text.split_whitespace().next() == Some(keyword) {
+            if left == 0 {
+                return statement.line.number;
+            }
+            left -= 1;
+        }
+    }
+    cursor.number
 }

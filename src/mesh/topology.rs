@@ -8,10 +8,9 @@ mod connect;
 #[cfg(test)]
 mod tests;
 
-use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
-use crate::mesh::control_mesh::ordered;
+use crate::mesh::control_mesh::creased_edges;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
@@ -78,17 +77,15 @@ impl Topology {
             scheme,
             ..mesh.options()
         };
-        let mut edge_sharpness = FxHashMap::default();
-        for crease in mesh.creases() {
-            edge_sharpness.insert(ordered(crease.vertices), clamp(crease.sharpness));
-        }
+        let creased = creased_edges(mesh);
         let mut vertex_sharpness = vec![0.0; mesh.vertex_count()];
         for corner in mesh.corners() {
             vertex_sharpness[corner.vertex as usize] = clamp(corner.sharpness);
         }
         let mut topology = Topology::connect(mesh.faces(), vertex_sharpness, options, |a, b| {
-            let sharpness = edge_sharpness.get(&ordered([a, b])).copied().unwrap_or(0.0);
-            (sharpness, [0.0; 2])
+            let crease = creased.crease([a, b]);
+            let sharpness = crease.map_or(0.0, |crease| mesh.creases()[crease].sharpness);
+            (clamp(sharpness), [0.0; 2])
         });
         for &hole in mesh.holes() {
             topology.holes[hole as usize] = true;
@@ -160,10 +157,7 @@ impl Topology {
     /// Whether an edge has at most two faces, and two walk it in opposite directions.
     fn is_manifold_edge(&self, edge: u32) -> bool {
         let [a, _] = self.edges[edge as usize].vertices;
-        let forward = |&face: &u32| {
-            let corner = self.face_edges(face).iter().position(|&e| e == edge);
-            corner.is_some_and(|corner| self.face(face)[corner] == a)
-        };
+        let forward = |&face: &u32| self.edges_at(face, a)[0] == edge;
         match self.edge_faces.get(edge) {
             [] | [_] => true,
             [first, second] => forward(first) != forward(second),
@@ -322,16 +316,26 @@ impl Topology {
 
     /// The two edges of `face` that meet in `vertex`.
     fn edges_at(&self, face: u32, vertex: u32) -> [u32; 2] {
-        let vertices = self.face(face);
-        let corner = vertices
-            .iter()
-            .position(|&v| v == vertex)
-            .expect("the face has this vertex");
+        let corner = self.corner_of(face, vertex) as usize;
         let edges = self.face_edges(face);
         [
             edges[corner],
-            edges[(corner + vertices.len() - 1) % vertices.len()],
+            edges[(corner + edges.len() - 1) % edges.len()],
         ]
+    }
+
+    /// The corner at which `face`, which must have it, has `vertex`.
+    pub(crate) fn corner_of(&self, face: u32, vertex: u32) -> u32 {
+        let (vertices, around) = (self.face(face), self.vertex_faces.get(vertex));
+        // Whichever list is shorter: corners of an n-gon have few faces, faces around a pole few corners.
+        let found = if vertices.len() <= around.len() {
+            let corner = vertices.iter().position(|&v| v == vertex);
+            corner.map(|corner| corner as u32)
+        } else {
+            let corner = around.iter().find(|corner| corner.face == face);
+            corner.map(|corner| corner.corner)
+        };
+        found.expect("the face has this vertex")
     }
 
     /// Steps around `vertex` from `face` across `edge`: the face on the other side and its other edge at the vertex.
@@ -353,6 +357,12 @@ impl Topology {
 
     /// The sector around corner `corner` of `face`, which must be one; see [`Topology::fan_at`].
     pub(crate) fn fan(&self, face: u32, corner: u32) -> Fan {
+        let fan = self.fan_within(face, corner, usize::MAX);
+        fan.expect("no fan has so many faces")
+    }
+
+    /// The same if it has at most so many faces, which is found out without walking through more.
+    pub(crate) fn fan_within(&self, face: u32, corner: u32, greatest: usize) -> Option<Fan> {
         let arity = self.face(face).len();
         let vertex = self.face(face)[corner as usize];
         let first = self.face_edges(face)[corner as usize];
@@ -372,16 +382,22 @@ impl Topology {
             if next == face {
                 fan.closed = true;
                 fan.edges.pop();
-                return fan;
+                return Some(fan);
             }
             fan.faces.push(next);
             fan.edges.push(edge);
+            if fan.faces.len() > greatest {
+                return None;
+            }
         }
         let mut before: SmallVec<[(u32, u32); 8]> = SmallVec::new();
         let (mut here, mut across) = (face, first);
         while let Some((next, edge)) = self.crossing(&fan, here, across) {
             before.push((next, edge));
             (here, across) = (next, edge);
+            if fan.faces.len() + before.len() > greatest {
+                return None;
+            }
         }
         fan.at = before.len();
         before.reverse();
@@ -389,7 +405,7 @@ impl Topology {
             .insert_many(0, before.iter().map(|&(face, _)| face));
         fan.edges
             .insert_many(0, before.iter().map(|&(_, edge)| edge));
-        fan
+        Some(fan)
     }
 
     fn crossing(&self, fan: &Fan, face: u32, edge: u32) -> Option<(u32, u32)> {

@@ -1,5 +1,8 @@
 //! Polygons cut into triangles, for schemes that take nothing else.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use glam::DVec3;
 
 use crate::error::Result;
@@ -30,9 +33,13 @@ pub fn triangulated(mesh: &ControlMesh, how: Triangulation) -> Result<ControlMes
     // Of unit size: squares of lengths leave the range of f64 elsewhere.
     let placement = mesh.placement();
     let local = |vertex: &u32| placement.local(mesh.positions()[*vertex as usize]);
+    let mut is_hole = vec![false; mesh.face_count()];
+    mesh.holes()
+        .iter()
+        .for_each(|&face| is_hole[face as usize] = true);
     for (number, face) in mesh.faces().enumerate() {
         let corners = mesh.corner_range(number);
-        let hole = mesh.holes().contains(&(number as u32));
+        let hole = is_hole[number];
         let points: Vec<DVec3> = face.iter().map(local).collect();
         for triangle in cut(&points, how) {
             if hole {
@@ -67,26 +74,66 @@ pub fn triangulated(mesh: &ControlMesh, how: Triangulation) -> Result<ControlMes
 
 /// The triangles of a face with these corners, as their numbers.
 fn cut(points: &[DVec3], how: Triangulation) -> Vec<[usize; 3]> {
-    let mut rest: Vec<usize> = (0..points.len()).collect();
-    let mut triangles = Vec::with_capacity(points.len() - 2);
-    while rest.len() > 3 {
-        let n = rest.len();
-        let diagonal = |ear: usize| {
-            let [a, b] = [rest[(ear + n - 1) % n], rest[(ear + 1) % n]];
-            points[a].distance_squared(points[b])
-        };
-        let ear = match how {
-            Triangulation::Fan => 1,
-            // The first of the shortest: equal diagonals are cut alike on every machine.
-            Triangulation::ShortestDiagonal => (0..n)
-                .min_by(|&a, &b| diagonal(a).total_cmp(&diagonal(b)))
-                .unwrap_or(1),
-        };
-        let [before, after] = [(ear + n - 1) % n, (ear + 1) % n];
-        triangles.push([rest[before], rest[ear], rest[after]]);
-        rest.remove(ear);
+    match how {
+        Triangulation::Fan => (2..points.len()).map(|i| [0, i - 1, i]).collect(),
+        Triangulation::ShortestDiagonal => cut_ears(points),
     }
-    triangles.push([rest[0], rest[1], rest[2]]);
+}
+
+/// A diagonal that cuts off a corner, by its length and then by the corner: equal diagonals are cut alike on every machine. The least is the first in
+/// a heap whose head is the greatest.
+#[derive(PartialEq)]
+struct Diagonal {
+    length: f64,
+    ear: usize,
+    /// The corners that it joins, as far as is known: an ear whose neighbours are others by now is stale.
+    ends: [usize; 2],
+}
+
+impl Eq for Diagonal {}
+
+impl PartialOrd for Diagonal {
+    fn partial_cmp(&self, other: &Diagonal) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Diagonal {
+    fn cmp(&self, other: &Diagonal) -> Ordering {
+        let by_length = other.length.total_cmp(&self.length);
+        by_length.then(other.ear.cmp(&self.ear))
+    }
+}
+
+/// Cuts off one corner after another, each time that with the shortest diagonal, until three are left.
+fn cut_ears(points: &[DVec3]) -> Vec<[usize; 3]> {
+    let n = points.len();
+    let mut before: Vec<usize> = (0..n).map(|i| (i + n - 1) % n).collect();
+    let mut after: Vec<usize> = (0..n).map(|i| (i + 1) % n).collect();
+    let diagonal = |ear: usize, ends: [usize; 2]| Diagonal {
+        length: points[ends[0]].distance_squared(points[ends[1]]),
+        ear,
+        ends,
+    };
+    let all = (0..n).map(|ear| diagonal(ear, [before[ear], after[ear]]));
+    let mut diagonals: BinaryHeap<Diagonal> = all.collect();
+    let mut gone = vec![false; n];
+    let mut triangles = Vec::with_capacity(n - 2);
+    while triangles.len() + 3 < n {
+        let Some(Diagonal { ear, ends, .. }) = diagonals.pop() else {
+            break;
+        };
+        if gone[ear] || ends != [before[ear], after[ear]] {
+            continue;
+        }
+        let [a, b] = ends;
+        triangles.push([a, ear, b]);
+        gone[ear] = true;
+        (after[a], before[b]) = (b, a);
+        diagonals.extend([a, b].map(|ear| diagonal(ear, [before[ear], after[ear]])));
+    }
+    let rest: Vec<usize> = (0..n).filter(|&corner| !gone[corner]).collect();
+    triangles.extend(rest.as_chunks::<3>().0);
     triangles
 }
 

@@ -4,9 +4,9 @@
 //! n-gon's edge, of all in its centre.
 
 use glam::{Vec2, Vec3};
+use smallvec::SmallVec;
 
 use crate::error::Result;
-use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::surface::{Controls, SurfacePoint, Tangents, UNIT, reach};
@@ -41,47 +41,52 @@ fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
             Domain::Triangles => &mut triangles,
         };
         let mut patch = patches::patch(model, part, 0);
-        patch.controls = pass.controls.len() as u32;
-        pass.controls.extend(controls(topology, part));
+        patch.controls = push_controls(&mut pass.controls, topology.face(part.face), part);
         pass.texture.push(patches::texture(model, part, 0));
         pass.patches.push(patch);
     }
     Ok(Prepared::of([quads, triangles]))
 }
 
-/// Of a triangle its vertices. Of a quad where the vertices of each of the four points end, counted from the list's begin, then the vertices.
-fn controls(topology: &Topology, part: Part) -> Vec<u32> {
-    let vertices = topology.face(part.face);
+/// Adds the list of a part of a face with these vertices, and tells where it begins. Of a triangle its vertices. Of a quad where the vertices of each of the
+/// four points begin and end, then the vertices; but those of an n-gon's centre stand once, before the list of its first part.
+fn push_controls(controls: &mut Vec<u32>, vertices: &[u32], part: Part) -> u32 {
     if part.domain == Domain::Triangles {
-        return vertices.to_vec();
+        let list = controls.len() as u32;
+        controls.extend_from_slice(vertices);
+        return list;
     }
     let (n, i) = (vertices.len(), part.corner as usize);
-    let points: [Vec<u32>; 4] = if n == 4 {
-        std::array::from_fn(|corner| vec![vertices[corner]])
+    if n != 4 && i == 0 {
+        controls.extend_from_slice(vertices);
+    }
+    let list = controls.len() as u32;
+    let first = list + 8;
+    let (ends, own) = if n == 4 {
+        let ends = std::array::from_fn(|corner| [first + corner as u32, first + corner as u32 + 1]);
+        (ends, SmallVec::<[u32; 4]>::from_slice(vertices))
     } else {
-        [
-            vec![vertices[i]],
-            vec![vertices[i], vertices[(i + 1) % n]],
-            vertices.to_vec(),
-            vec![vertices[i], vertices[(i + n - 1) % n]],
-        ]
+        let around = [n - 1, 0, 1].map(|turn| vertices[(i + turn) % n]);
+        // The lists of the parts before lie between.
+        let centre = list - n as u32 - part.corner * (8 + 3);
+        let ends = [
+            [first + 1, first + 2],
+            [first + 1, first + 3],
+            [centre, centre + n as u32],
+            [first, first + 2],
+        ];
+        (ends, SmallVec::from_slice(&around))
     };
-    let mut end = 4;
-    let ends = points.iter().map(|point| {
-        end += point.len() as u32;
-        end
-    });
-    ends.collect::<Vec<u32>>()
-        .into_iter()
-        .chain(points.concat())
-        .collect()
+    controls.extend(ends.as_flattened());
+    controls.extend_from_slice(&own);
+    list
 }
 
 fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    let controls = &pass.controls[pass.patches[patch].controls as usize..];
+    let list = pass.patches[patch].controls as usize;
     let point = |corner: usize| {
-        let start = if corner == 0 { 4 } else { controls[corner - 1] } as usize;
-        let vertices = &controls[start..controls[corner] as usize];
+        let ends = [0, 1].map(|end| pass.controls[list + 2 * corner + end] as usize);
+        let vertices = &pass.controls[ends[0]..ends[1]];
         vertices
             .iter()
             .map(|&vertex| given.vertices[vertex as usize])

@@ -252,20 +252,24 @@ fn term(source: u32, position: f64, du: f64, dv: f64) -> PointTerm {
 
 /// The terms of three masks, each vertex once, and the greatest weight of the position last: so a sum of hundreds keeps its last places.
 fn joined(masks: [&Mask; 3]) -> Vec<PointTerm> {
-    let mut vertices: Vec<u32> = masks
-        .iter()
-        .flat_map(|mask| mask.iter().map(|&(v, _)| v))
-        .collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let weight = |mask: &Mask, vertex: u32| -> f64 {
-        mask.iter()
-            .filter(|&&(v, _)| v == vertex)
-            .map(|&(_, w)| w)
-            .sum()
+    let of_mask = |(number, mask): (usize, &Mask)| {
+        let weight = move |&(vertex, weight): &(u32, f64)| {
+            let mut weights = [0.0; 3];
+            weights[number] = weight;
+            (vertex, weights)
+        };
+        mask.iter().map(weight).collect::<Vec<_>>()
     };
-    let weights = |vertex: u32| (vertex, masks.map(|mask| weight(mask, vertex)));
-    let mut terms: Vec<(u32, [f64; 3])> = vertices.into_iter().map(weights).collect();
+    let mut terms: Vec<(u32, [f64; 3])> = masks.into_iter().enumerate().flat_map(of_mask).collect();
+    // What a vertex has in a mask is added in the mask's order.
+    terms.sort_by_key(|&(vertex, _)| vertex);
+    terms.dedup_by(|next, sum| {
+        let alike = next.0 == sum.0;
+        if alike {
+            sum.1 = std::array::from_fn(|i| sum.1[i] + next.1[i]);
+        }
+        alike
+    });
     terms.sort_by(|(_, [a, ..]), (_, [b, ..])| a.abs().total_cmp(&b.abs()));
     terms
         .into_iter()

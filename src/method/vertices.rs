@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::abi;
 use crate::error::{Error, Place, Result};
 use crate::mesh::Model;
+use crate::mesh::places::Places;
 use crate::mesh::topology::{Fan, Topology};
 use crate::method::patches::{self, Part};
 use crate::method::points::{Points, Row};
@@ -137,9 +138,14 @@ fn fans(topology: &Topology, vertex: u32) -> Vec<Fan> {
     let mut corners = topology.vertex_faces(vertex).to_vec();
     corners.sort_unstable_by_key(|corner| corner.face);
     let mut fans: Vec<Fan> = Vec::new();
+    let mut met = Places::default();
     for corner in corners {
-        if !fans.iter().any(|fan| fan.faces.contains(&corner.face)) {
-            fans.push(topology.fan(corner.face, corner.corner));
+        if met.add(corner.face) {
+            let fan = topology.fan(corner.face, corner.corner);
+            fan.faces.iter().for_each(|&face| {
+                met.add(face);
+            });
+            fans.push(fan);
         }
     }
     fans

@@ -9,6 +9,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::error::{Error, Misuse, Result};
+use crate::mesh::places::Places;
 use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::Topology;
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
@@ -104,14 +105,11 @@ fn surrounding_faces(
 ) -> SmallVec<[(u32, u32); 16]> {
     let arity = topology.face(face).len() as u32;
     let mut found = SmallVec::from_slice(&[(face, start)]);
+    let mut known = Places::default();
+    known.add(face);
     let mut add = |next: u32, vertex: u32| {
-        if found.iter().all(|&(known, _)| known != next) {
-            let corner = topology
-                .face(next)
-                .iter()
-                .position(|&v| v == vertex)
-                .expect("the walk stays at the vertex");
-            found.push((next, corner as u32));
+        if known.add(next) {
+            found.push((next, topology.corner_of(next, vertex)));
         }
     };
     'corners: for corner in (0..corners).map(|i| (start + i) % arity) {
@@ -180,17 +178,16 @@ impl Walk<'_> {
 
     /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
     fn edges(&mut self, faces: &[(u32, u32)], corners: usize) {
-        let mut seen: SmallVec<[u32; 8]> = SmallVec::new();
+        let mut seen = Places::default();
         for &(face, start) in faces {
             let edges = self.topology.face_edges(face);
             for &number in (0..edges.len()).map(|i| &edges[(start as usize + i) % edges.len()]) {
                 let edge = self.topology.edge(number);
-                if !is_sharp(edge.sharpness) || seen.contains(&number) {
+                if !is_sharp(edge.sharpness) {
                     continue;
                 }
                 let [a, b] = edge.vertices.map(|vertex| self.numbers[&vertex]);
-                if (a.min(b) as usize) < corners {
-                    seen.push(number);
+                if (a.min(b) as usize) < corners && seen.add(number) {
                     let ends = if a < b { [a, b] } else { [b, a] };
                     let next = if a < b {
                         edge.next

@@ -20,7 +20,11 @@ pub fn deep_limit(
     corner: u32,
 ) -> Option<LimitStencil> {
     let is_corner = (corner as usize) < topology.face(face).len();
-    is_corner.then(|| Descent::new(topology, scheme, face).limit(corner))
+    is_corner.then(|| {
+        // Most often a mask is known where one stands, and nothing around needs to be copied.
+        let known = vertex_limit(topology, scheme, face, corner);
+        known.unwrap_or_else(|| Descent::new(topology, scheme, face).limit(corner))
+    })
 }
 
 /// Two tangents next to `corner` of `face`, a triangle or quad: at (2^-halvings, 2^-halvings) from the corner. They span the tangent plane there and have
@@ -42,9 +46,8 @@ pub(crate) fn tangents_nearby(
         near = near.child(3);
     }
     let opposite = if triangle { corner } else { (corner + 2) % n };
-    let vertices = near.vertices.clone();
-    let [_, du, dv] = near.limit_rows(opposite);
-    orthonormal(&du, &dv).map(|row| outside(&row, &vertices))
+    let LimitStencil { du, dv, .. } = near.limit(opposite);
+    orthonormal_masks(&du, &dv)
 }
 
 /// Less than this sine between two rows of weights is what refining twenty times leaves of rounding.
@@ -83,17 +86,20 @@ pub(crate) fn orthonormal_masks(du: &Mask, dv: &Mask) -> [Mask; 2] {
         }
         row
     };
-    orthonormal(&row(du), &row(dv)).map(|row| outside(&row, &vertices))
+    let of_row = |row: Vec<f64>| -> Mask {
+        let all = vertices.iter().copied().zip(row);
+        all.filter(|&(_, weight)| weight != 0.0).collect()
+    };
+    orthonormal(&row(du), &row(dv)).map(of_row)
 }
 
 /// A face in its surroundings at some level.
 struct Descent {
     scheme: Scheme,
     topology: Topology,
-    /// Of each vertex its weights over those of the beginning.
-    values: Vec<Vec<f64>>,
-    /// The numbers that these have outside.
-    vertices: Vec<u32>,
+    /// Of each vertex its weights over those of the beginning, as they are numbered outside. Few of all that surround a face: rows with a weight for each
+    /// would take the square of their number.
+    values: Vec<Mask>,
 }
 
 impl Descent {
@@ -103,16 +109,11 @@ impl Descent {
             faces = with_neighbours(topology, &faces);
         }
         let (topology, vertices) = topology.excerpt(&faces);
-        let unit = |one: usize| {
-            (0..vertices.len())
-                .map(|i| f64::from(u8::from(i == one)))
-                .collect()
-        };
+        let itself = |vertex| Mask::from_slice(&[(vertex, 1.0)]);
         Descent {
             scheme,
             topology,
-            values: (0..vertices.len()).map(unit).collect(),
-            vertices,
+            values: vertices.into_iter().map(itself).collect(),
         }
     }
 
@@ -120,26 +121,26 @@ impl Descent {
         let refined = refine_child(&self.topology, self.scheme, child);
         let masks = refined.masks.iter();
         Descent {
-            values: masks.map(|mask| Vec::blend(mask, &self.values)).collect(),
+            values: masks.map(|mask| Mask::blend(mask, &self.values)).collect(),
             topology: refined.topology,
             ..self
         }
     }
 
-    fn limit(self, corner: u32) -> LimitStencil {
-        let vertices = self.vertices.clone();
-        let mask = |row: Vec<f64>| outside(&row, &vertices);
-        let [position, du, dv] = self.limit_rows(corner).map(mask);
-        LimitStencil { position, du, dv }
-    }
-
     /// Position and tangents at a corner, once a mask is known or the vertex stands for its limit.
-    fn limit_rows(mut self, mut corner: u32) -> [Vec<f64>; 3] {
+    fn limit(mut self, mut corner: u32) -> LimitStencil {
+        let over = |mask: &[(u32, f64)], values: &[Mask]| {
+            let mut row = Mask::blend(mask, values);
+            row.retain(|(_, weight)| *weight != 0.0);
+            row
+        };
         for _ in 0..DEEPEST {
-            if let Some(LimitStencil { position, du, dv }) =
-                vertex_limit(&self.topology, self.scheme, 0, corner)
-            {
-                return [position, du, dv].map(|mask| Vec::blend(&mask, &self.values));
+            if let Some(limit) = vertex_limit(&self.topology, self.scheme, 0, corner) {
+                return LimitStencil {
+                    position: over(&limit.position, &self.values),
+                    du: over(&limit.du, &self.values),
+                    dv: over(&limit.dv, &self.values),
+                };
             }
             let whole = self.scheme.is_whole(self.topology.face(0).len());
             self = self.child(corner);
@@ -147,12 +148,12 @@ impl Descent {
             corner = if whole { corner } else { 0 };
         }
         let (here, next, previous) = around(self.topology.face(0), corner);
-        let towards = |vertex: u32| Vec::blend(&[(vertex, 1.0), (here, -1.0)], &self.values);
-        [
-            self.values[here as usize].clone(),
-            towards(next),
-            towards(previous),
-        ]
+        let towards = |vertex: u32| over(&[(vertex, 1.0), (here, -1.0)], &self.values);
+        LimitStencil {
+            position: over(&[(here, 1.0)], &self.values),
+            du: towards(next),
+            dv: towards(previous),
+        }
     }
 }
 
@@ -160,10 +161,4 @@ impl Descent {
 fn around(face: &[u32], corner: u32) -> (u32, u32, u32) {
     let (n, i) = (face.len(), corner as usize);
     (face[i], face[(i + 1) % n], face[(i + n - 1) % n])
-}
-
-/// The weights that count, with the numbers that the vertices have outside of the excerpt.
-fn outside(weights: &[f64], vertices: &[u32]) -> Mask {
-    let all = vertices.iter().copied().zip(weights.iter().copied());
-    all.filter(|&(_, weight)| weight != 0.0).collect()
 }

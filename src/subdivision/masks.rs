@@ -5,6 +5,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::mesh::TriangleSubdivision;
+use crate::mesh::places::Places;
 use crate::mesh::sharpness::{Rule, is_sharp, rule, sum};
 use crate::mesh::topology::Topology;
 
@@ -46,11 +47,12 @@ impl Blend for Mask {
     /// In the order in which vertices first appear.
     fn blend(mask: &[(u32, f64)], values: &[Mask]) -> Mask {
         let mut sum = Mask::new();
+        let mut places = Places::default();
         for &(value, weight) in mask {
             for &(vertex, part) in values.get(value as usize).into_iter().flatten() {
-                match sum.iter_mut().find(|(known, _)| *known == vertex) {
-                    Some((_, total)) => *total += weight * part,
-                    None => sum.push((vertex, weight * part)),
+                match places.of(vertex) {
+                    place if place < sum.len() => sum[place].1 += weight * part,
+                    _ => sum.push((vertex, weight * part)),
                 }
             }
         }

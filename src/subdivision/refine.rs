@@ -6,6 +6,8 @@
 
 use smallvec::SmallVec;
 
+use crate::mesh::CreaseMethod;
+use crate::mesh::places::Places;
 use crate::mesh::sharpness::{decayed, decayed_around_vertex, is_sharp};
 use crate::mesh::topology::{FaceCorner, Topology};
 use crate::subdivision::masks::{Mask, edge_point, face_point, vertex_point};
@@ -48,17 +50,22 @@ fn child(topology: &Topology, face: u32, corner: u32) -> [Origin; 4] {
 
 /// The faces that share a vertex with any of the `faces`, which come first; each once.
 pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
-    let mut all = faces.to_vec();
+    let mut all = Places::default();
+    for &face in faces {
+        all.add(face);
+    }
+    // A vertex that many faces share is asked once.
+    let mut vertices = Places::default();
     for &face in faces {
         for &vertex in topology.face(face) {
-            for corner in topology.vertex_faces(vertex) {
-                if !all.contains(&corner.face) {
-                    all.push(corner.face);
+            if vertices.add(vertex) {
+                for corner in topology.vertex_faces(vertex) {
+                    all.add(corner.face);
                 }
             }
         }
     }
-    all
+    all.found().to_vec()
 }
 
 /// Refines the given children, each a face and a corner of it, with everything that touches them. Those of corners that the topology has not are left
@@ -219,6 +226,9 @@ pub(super) fn half(parent: &Topology, edge: u32, vertex: u32) -> (f32, [f32; 2])
     let sharpness = whole.next_at(vertex);
     if !is_sharp(sharpness) {
         return (sharpness, [0.0; 2]);
+    }
+    if method == CreaseMethod::Uniform {
+        return (sharpness, [decayed(sharpness); 2]);
     }
     let around = parent.vertex_edges(vertex);
     let halves: SmallVec<[f32; 8]> = around

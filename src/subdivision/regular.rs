@@ -118,7 +118,7 @@ fn single_crease(
 pub(super) fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPoints> {
     let vertices = topology.face(face);
     let [own, next, opposite, previous] = [0, 1, 2, 3].map(|i| vertices[(corner as usize + i) % 4]);
-    let fan = topology.fan(face, corner);
+    let fan = topology.fan_within(face, corner, 4)?;
     let end = |i: usize| topology.edge(fan.edges[i % fan.edges.len()]).other(own);
     let far = |i: usize| opposite_in(topology, fan.faces[i % fan.faces.len()], own);
     if fan.faces.iter().any(|&face| topology.face(face).len() != 4)

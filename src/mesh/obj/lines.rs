@@ -5,6 +5,8 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use memchr::memchr2;
+
 use crate::error::{Error, Place, Result};
 
 /// Statements that make the surface, and those that have no bearing on it.
@@ -45,16 +47,49 @@ pub(super) struct Statement<'a> {
     pub cut_off: bool,
 }
 
-/// Calls `visit` for each statement of a file.
-pub(super) fn for_each_statement<'a>(
-    file: &'a str,
-    bytes: &'a [u8],
-    mut visit: impl FnMut(Statement<'a>) -> Result<()>,
-) -> Result<()> {
-    let mut lines = (1..).zip(Lines(bytes));
-    while let Some((number, first)) = lines.next() {
+/// A place in a file.
+#[derive(Clone, Copy)]
+pub(super) struct Cursor<'a> {
+    pub file: &'a str,
+    /// What is still to come.
+    pub rest: &'a [u8],
+    /// The number of the line at its beginning.
+    pub number: usize,
+}
+
+impl<'a> Cursor<'a> {
+    /// The beginning of a file.
+    pub fn new(file: &'a str, bytes: &'a [u8]) -> Cursor<'a> {
+        Cursor {
+            file,
+            rest: bytes,
+            number: 1,
+        }
+    }
+
+    /// Steps over a line of so many bytes, its end included.
+    pub fn skip(&mut self, length: usize) {
+        self.rest = &self.rest[length..];
+        self.number += 1;
+    }
+
+    /// The next line, whose end is not part of it.
+    fn line(&mut self) -> Option<(usize, &'a [u8])> {
+        let line = Lines(self.rest).next()?;
+        let number = self.number;
+        self.skip(line.len() + end_of_line(&self.rest[line.len()..]));
+        Some((number, line))
+    }
+
+    /// The next statement. What it consists of may be nothing at all.
+    pub fn statement(&mut self) -> Option<Statement<'a>> {
+        let (number, first) = self.line()?;
+        let line = Line {
+            file: self.file,
+            number,
+        };
         let mut statement = Statement {
-            line: Line { file, number },
+            line,
             text: Cow::Borrowed(without_comment(first)),
             swallowed: None,
             cut_off: false,
@@ -62,7 +97,7 @@ pub(super) fn for_each_statement<'a>(
         while statement.text.ends_with(b"\\") {
             let joined = statement.text.to_mut();
             joined.pop();
-            let Some((number, next)) = lines.next() else {
+            let Some((number, next)) = self.line() else {
                 statement.cut_off = true;
                 break;
             };
@@ -72,13 +107,11 @@ pub(super) fn for_each_statement<'a>(
             joined.push(b' ');
             joined.extend_from_slice(without_comment(next));
         }
-        visit(statement)?;
+        Some(statement)
     }
-    Ok(())
 }
 
-/// The lines of a text, which end as they do on Unix, Windows or old Macs. CR CR LF, which a text file becomes that is written
-/// as one twice, is one end.
+/// The lines of a text.
 struct Lines<'a>(&'a [u8]);
 
 impl<'a> Iterator for Lines<'a> {
@@ -88,15 +121,25 @@ impl<'a> Iterator for Lines<'a> {
         if self.0.is_empty() {
             return None;
         }
-        let end = self.0.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-        let (line, rest) = self.0.split_at(end.unwrap_or(self.0.len()));
-        let ends: [&[u8]; 3] = [b"\r\r\n", b"\r\n", b""];
-        let found = ends.iter().find(|end| rest.starts_with(end));
-        self.0 = match found.map_or(0, |end| end.len()) {
-            0 => rest.get(1..).unwrap_or_default(),
-            length => &rest[length..],
-        };
+        let end = memchr2(b'\n', b'\r', self.0).unwrap_or(self.0.len());
+        let (line, rest) = self.0.split_at(end);
+        self.0 = &rest[end_of_line(rest)..];
         Some(line)
+    }
+}
+
+/// How many bytes belong to a line from here on, its end included. Lines end as they do on Unix, Windows or old Macs. CR CR LF, which a text file becomes
+/// that is written as one twice, is one end.
+pub(super) fn end_of_line(bytes: &[u8]) -> usize {
+    let text = match bytes {
+        [b'\n' | b'\r', ..] | [] => 0,
+        _ => memchr2(b'\n', b'\r', bytes).unwrap_or(bytes.len()),
+    };
+    text + match bytes[text..] {
+        [b'\r', b'\r', b'\n', ..] => 3,
+        [b'\r', b'\n', ..] => 2,
+        [_, ..] => 1,
+        [] => 0,
     }
 }
 

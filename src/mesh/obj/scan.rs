@@ -1,9 +1,11 @@
-//! The scan: checks every statement while its line is known and keeps those that `tobj` is to read.
+//! The scan: what a file holds, checked statement by statement while its line is known.
 
 use std::collections::BTreeSet;
 
+use glam::{DVec2, DVec3};
+
 use super::lines::{
-    Line, READ, SKIPPED, Statement, for_each_statement, index, not_an_index, number, quoted, value,
+    Cursor, Line, READ, SKIPPED, Statement, index, not_an_index, number, quoted, value,
 };
 use super::tags::Tags;
 use crate::error::{Error, Place, Result};
@@ -11,17 +13,16 @@ use crate::error::{Error, Place, Result};
 /// So many kinds of warnings are given for a file. What is no OBJ file at all has a kind on every line.
 const GREATEST_WARNINGS: usize = 20;
 
-/// What a file holds, line by line.
+/// What a file holds.
 #[derive(Default)]
 pub(super) struct Scan {
-    /// The checked `v`, `vt` and `f` statements, one a line, without comments.
-    pub geometry: String,
-    pub vertices: usize,
-    pub vertex_lines: Vec<usize>,
-    pub textures: usize,
-    pub texture_lines: Vec<usize>,
+    pub positions: Vec<DVec3>,
+    pub textures: Vec<DVec2>,
     pub face_sizes: Vec<u32>,
-    pub face_lines: Vec<usize>,
+    /// The vertex of each corner of each face, counted from 0.
+    pub face_vertices: Vec<u32>,
+    /// The texture coordinate of each corner, as long as every corner has had one.
+    pub face_textures: Vec<u32>,
     /// Whether every corner of every face has a texture coordinate.
     pub textured: bool,
     pub tags: Tags,
@@ -30,6 +31,13 @@ pub(super) struct Scan {
     textured_corners: usize,
     first_untextured: Option<usize>,
     warned: BTreeSet<String>,
+}
+
+/// The corner of a face: the numbers of its vertex and texture coordinate, counted from 0.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    pub vertex: u32,
+    pub texture: Option<u32>,
 }
 
 /// The greatest number a face names, counted from 1, and the line where it does.
@@ -43,17 +51,37 @@ impl Scan {
     /// Scans a file's bytes; `file` is what messages call it.
     pub fn new(file: &str, bytes: &[u8]) -> Result<Scan> {
         let mut scan = Scan::default();
-        for_each_statement(file, bytes, |statement| scan.statement(&statement))?;
+        let mut cursor = Cursor::new(file, bytes);
+        while !cursor.rest.is_empty() {
+            if let Some(length) = scan.plain(cursor.rest, cursor.number) {
+                cursor.skip(length);
+            } else if let Some(statement) = cursor.statement() {
+                scan.statement(&statement)?;
+            }
+        }
         scan.finish(file, bytes)?;
         Ok(scan)
     }
 
-    /// The line that a message about `place` should name.
-    pub fn line_of(&self, place: &Place) -> Option<usize> {
-        match *place {
-            Place::Face(face) if face < self.face_lines.len() => Some(self.face_lines[face]),
-            _ => self.tags.line_of(place),
+    /// Takes in a face, none of whose corners names a vertex twice.
+    pub(super) fn take_face(&mut self, line: usize, corners: &[Corner]) {
+        for corner in corners {
+            self.face_vertices.push(corner.vertex);
+            self.highest_vertex.raise(line, corner.vertex as usize + 1);
+            match corner.texture {
+                None => {
+                    self.first_untextured.get_or_insert(line);
+                }
+                Some(texture) => {
+                    self.highest_texture.raise(line, texture as usize + 1);
+                    self.textured_corners += 1;
+                    if self.first_untextured.is_none() {
+                        self.face_textures.push(texture);
+                    }
+                }
+            }
         }
+        self.face_sizes.push(corners.len() as u32);
     }
 
     fn statement(&mut self, statement: &Statement) -> Result<()> {
@@ -111,22 +139,21 @@ impl Scan {
                 "write three: v x y z",
             ));
         };
-        for word in [x, y, z] {
-            number(line, "coordinate", word)?;
+        let mut position = DVec3::ZERO;
+        for (axis, word) in [x, y, z].into_iter().enumerate() {
+            position[axis] = number(line, "coordinate", word)?;
         }
         // Colours may be anything that exporters write for numbers.
         for word in rest {
             value(line, "coordinate", word)?;
         }
-        // A fourth value alone is a weight, three more are a colour. `tobj` would divide by the weight.
+        // A fourth value alone is a weight, three more are a colour.
         if let [weight] = rest
             && value(line, "weight", weight)? != Some(1.0)
         {
             self.warn_once(line, "v", "the fourth value, a weight, is ignored");
         }
-        self.vertices += 1;
-        self.vertex_lines.push(line.number);
-        self.keep("v", &[x, y, z]);
+        self.positions.push(position);
         Ok(())
     }
 
@@ -139,17 +166,20 @@ impl Scan {
             ));
         }
         let mut finite = true;
+        let mut given = [0.0; 2];
         for (i, word) in words.iter().enumerate() {
-            finite &= value(line, "texture coordinate", word)?.is_some() || i > 1;
+            let value = value(line, "texture coordinate", word)?;
+            finite &= value.is_some() || i > 1;
+            if let (Some(value), Some(place)) = (value, given.get_mut(i)) {
+                *place = value;
+            }
         }
         if !finite {
+            given = [0.0; 2];
             let note = "a texture coordinate is not finite: (0, 0) instead";
             self.warn_once(line, "vt", note);
         }
-        let read = |i: usize| words.get(i).copied().filter(|_| finite).unwrap_or("0");
-        self.textures += 1;
-        self.texture_lines.push(line.number);
-        self.keep("vt", &[read(0), read(1)]);
+        self.textures.push(given.into());
         Ok(())
     }
 
@@ -160,33 +190,25 @@ impl Scan {
                 "faces need three or more vertices",
             ));
         }
-        let mut vertices = Vec::with_capacity(words.len());
-        let mut corners = Vec::with_capacity(words.len());
-        for word in words {
-            let (vertex, texture) = self.face_corner(line, word)?;
-            vertices.push(vertex);
-            corners.push(match texture {
-                Some(texture) => format!("{vertex}/{texture}"),
-                None => vertex.to_string(),
-            });
-        }
+        let corners = words.iter().map(|word| self.face_corner(line, word));
+        let corners = corners.collect::<Result<Vec<Corner>>>()?;
+        let mut vertices: Vec<u32> = corners.iter().map(|corner| corner.vertex).collect();
         vertices.sort_unstable();
         if let Some(pair) = vertices.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(line.error(
-                format!("the face names vertex {} twice", pair[0]),
+                format!("the face names vertex {} twice", u64::from(pair[0]) + 1),
                 "remove the repeated vertex, or split the face",
             ));
         }
-        let size = u32::try_from(words.len())
-            .map_err(|_| line.error("the face has too many vertices", "split the face"))?;
-        self.face_sizes.push(size);
-        self.face_lines.push(line.number);
-        self.keep("f", &corners);
+        if u32::try_from(words.len()).is_err() {
+            return Err(line.error("the face has too many vertices", "split the face"));
+        }
+        self.take_face(line.number, &corners);
         Ok(())
     }
 
-    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and hands out the numbers of vertex and texture coordinate, counted from 1.
-    fn face_corner(&mut self, line: Line, word: &str) -> Result<(usize, Option<usize>)> {
+    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn` and hands out the numbers of vertex and texture coordinate.
+    fn face_corner(&mut self, line: Line, word: &str) -> Result<Corner> {
         let mut parts = word.split('/');
         let vertex = parts.next().unwrap_or_default();
         let texture = parts.next().unwrap_or_default();
@@ -197,24 +219,23 @@ impl Scan {
                 "write the corner of a face as v, v/vt, v//vn or v/vt/vn",
             ));
         }
-        let vertex = index(line, "vertex", vertex, self.vertices)?;
-        self.highest_vertex.raise(line, vertex);
+        // No file has so many as do not fit, which is said once it is known how many there are.
+        let from_zero = |number: usize| u32::try_from(number - 1).unwrap_or(u32::MAX);
+        let vertex = index(line, "vertex", vertex, self.positions.len())?;
+        self.highest_vertex.raise(line.number, vertex);
         let texture = match texture {
-            "" => {
-                self.first_untextured.get_or_insert(line.number);
-                None
-            }
+            "" => None,
             texture => {
-                let texture = index(line, "texture coordinate", texture, self.textures)?;
-                self.highest_texture.raise(line, texture);
-                self.textured_corners += 1;
-                Some(texture)
+                let texture = index(line, "texture coordinate", texture, self.textures.len())?;
+                self.highest_texture.raise(line.number, texture);
+                Some(from_zero(texture))
             }
         };
+        let vertex = from_zero(vertex);
         if !normal.is_empty() && normal.parse::<isize>().is_err() {
             return Err(not_an_index(line, "normal", normal));
         }
-        Ok((vertex, texture))
+        Ok(Corner { vertex, texture })
     }
 
     fn tag(&mut self, line: Line, words: &[&str]) -> Result<()> {
@@ -240,9 +261,10 @@ impl Scan {
             };
             return Err(Error::input(Place::File(file.to_string()), problem, remedy));
         }
-        self.highest_vertex.check(file, "vertex", self.vertices)?;
+        self.highest_vertex
+            .check(file, "vertex", self.positions.len())?;
         self.highest_texture
-            .check(file, "texture coordinate", self.textures)?;
+            .check(file, "texture coordinate", self.textures.len())?;
         self.textured = self.textured_corners > 0 && self.first_untextured.is_none();
         if let (Some(number), 1..) = (self.first_untextured, self.textured_corners) {
             let line = Line { file, number };
@@ -251,15 +273,6 @@ impl Scan {
             );
         }
         Ok(())
-    }
-
-    fn keep(&mut self, keyword: &str, words: &[impl AsRef<str>]) {
-        self.geometry.push_str(keyword);
-        for word in words {
-            self.geometry.push(' ');
-            self.geometry.push_str(word.as_ref());
-        }
-        self.geometry.push('\n');
     }
 
     fn warn_once(&mut self, line: Line, key: &str, note: &str) {
@@ -279,12 +292,9 @@ impl Scan {
 }
 
 impl Highest {
-    fn raise(&mut self, line: Line, number: usize) {
+    fn raise(&mut self, line: usize, number: usize) {
         if number > self.number {
-            *self = Highest {
-                number,
-                line: line.number,
-            };
+            *self = Highest { number, line };
         }
     }
 

@@ -19,8 +19,8 @@ pub struct Hexagons {
     /// How they are computed.
     pub points: Points,
     refined: Topology,
-    /// Points by vertex of the refined mesh and lowest face of the sector.
-    numbers: FxHashMap<(u32, u32), u32>,
+    /// The point at each corner of each of its faces.
+    numbers: Vec<[u32; 3]>,
     /// How many points a vertex of the refined mesh has.
     counts: Vec<u32>,
     /// The vertices whose points stand for several normals.
@@ -61,40 +61,30 @@ impl Hexagons {
             masks,
             ..
         } = refine_all(topology, scheme);
-        let mut numbers = FxHashMap::default();
         let mut counts = vec![0; refined.vertex_count()];
-        let mut places = Vec::new();
+        let mut places: Vec<Place> = Vec::new();
+        // At first of the place of each corner, then of its point.
+        let mut numbers = vec![[UNNUMBERED; 3]; refined.face_count()];
         for face in (0..refined.face_count() as u32).filter(|&face| !refined.is_hole(face)) {
             for (corner, &vertex) in (0..).zip(refined.face(face)) {
+                if numbers[face as usize][corner as usize] != UNNUMBERED {
+                    continue;
+                }
                 let sector = sector(&refined, face, corner);
-                numbers.entry((vertex, sector[0])).or_insert_with(|| {
-                    let (lowest, closing) = (sector[0], closing_tangents(&refined, face, corner));
-                    let kind = match sector.len() {
-                        1 => Kind::Checked(sector),
-                        _ if is_unpromised(&refined, scheme, face, corner)
-                            && (vertex as usize) < topology.vertex_count() =>
-                        {
-                            Kind::Checked(sector)
-                        }
-                        _ if is_cusp(&refined, face, corner) => Kind::Cusp(sector),
-                        _ if closing.is_some() => Kind::Closing,
-                        _ => Kind::Limit,
-                    };
-                    counts[vertex as usize] += 1;
-                    places.push(Place {
-                        vertex,
-                        face: lowest,
-                        kind,
-                    });
-                    UNNUMBERED
+                for &face in &sector {
+                    let corner = refined.corner_of(face, vertex);
+                    numbers[face as usize][corner as usize] = places.len() as u32;
+                }
+                let of_control = (vertex as usize) < topology.vertex_count();
+                places.push(Place {
+                    vertex,
+                    face: sector[0],
+                    kind: kind(&refined, scheme, sector, vertex, of_control),
                 });
+                counts[vertex as usize] += 1;
             }
         }
-        // Points that come to their normals alike stand in a row.
-        places.sort_by(|a, b| a.kind.cmp(&b.kind));
-        for (number, place) in (0..).zip(&places) {
-            numbers.insert((place.vertex, place.face), number);
-        }
+        let numbers = sort(&mut places, numbers);
         let rows = Rows {
             topology,
             refined: &refined,
@@ -128,10 +118,45 @@ impl Hexagons {
             if self.counts[vertex as usize] > 1 || self.cusps.contains(&vertex) {
                 flags |= super::creased(i);
             }
-            self.numbers[&(vertex, sector(&self.refined, child, corner)[0])]
+            self.numbers[child as usize][corner as usize]
         });
         (points, flags)
     }
+}
+
+/// How the point of a sector around `vertex` comes to its normal.
+fn kind(
+    refined: &Topology,
+    scheme: Scheme,
+    sector: Vec<u32>,
+    vertex: u32,
+    of_control: bool,
+) -> Kind {
+    let face = sector[0];
+    let corner = refined.corner_of(face, vertex);
+    match sector.len() {
+        1 => Kind::Checked(sector),
+        _ if of_control && is_unpromised(refined, scheme, face, corner) => Kind::Checked(sector),
+        _ if is_cusp(refined, face, corner) => Kind::Cusp(sector),
+        _ if closing_tangents(refined, face, corner).is_some() => Kind::Closing,
+        _ => Kind::Limit,
+    }
+}
+
+/// Puts places that come to their normals alike in a row, and their numbers right.
+fn sort(places: &mut Vec<Place>, mut numbers: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+    let mut sorted: Vec<(u32, Place)> = (0..).zip(std::mem::take(places)).collect();
+    sorted.sort_by(|(_, a), (_, b)| a.kind.cmp(&b.kind));
+    let mut points = vec![0; sorted.len()];
+    for (point, &(place, _)) in (0..).zip(&sorted) {
+        points[place as usize] = point;
+    }
+    for number in numbers.as_flattened_mut() {
+        // Corners of holes have none.
+        *number = points.get(*number as usize).copied().unwrap_or(UNNUMBERED);
+    }
+    places.extend(sorted.into_iter().map(|(_, place)| place));
+    numbers
 }
 
 /// The faces around a corner up to the next infinite creases, the lowest first.

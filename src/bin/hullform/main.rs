@@ -8,6 +8,7 @@ mod capture;
 mod compare;
 mod devices;
 mod drawing;
+mod evaluation;
 mod framing;
 mod gpu;
 mod interrupt;

@@ -66,8 +66,14 @@ fn a_plan_is_told_as_json() {
         "bytes",
         "control_points",
         "build_seconds",
+        "seconds",
+        "faces_per_second",
+        "threads",
+        "peak_bytes",
     ];
     assert_eq!(keys(&plan), facts);
+    let steps = ["reading", "topology", "preparing"];
+    assert_eq!(keys(&plan["seconds"]), steps);
     let nodes = [
         "internal",
         "regular",
@@ -116,6 +122,23 @@ fn a_plan_of_another_depth_has_its_levels() {
     assert_eq!(plan["patches"], 6);
     assert_eq!(plan["irregular"], 6);
     assert_eq!(plan["bytes"]["vertices"], 8 * 12);
+}
+
+/// Copies share plans, and nothing of what is told depends on how many threads plan.
+#[test]
+fn copies_of_a_model_have_its_plans() {
+    let plan = |more: &[&str]| json(&run(&[&["plan", "builtin:hull", "--json"], more].concat()));
+    let one = plan(&["--threads", "1"]);
+    let nine = plan(&["--replicate", "9", "--threads", "3"]);
+    assert_eq!([&one["threads"], &nine["threads"]], [1, 3]);
+    for fact in ["plans", "edge_plans", "vertex_plans", "stencils", "nodes"] {
+        assert_eq!(one[fact], nine[fact], "{fact}");
+    }
+    for fact in ["faces", "patches", "regular", "irregular"] {
+        assert_eq!(9 * number(&one[fact]), number(&nine[fact]), "{fact}");
+    }
+    let words = fails(&["plan", "builtin:hull", "--replicate", "4000000000"], 2);
+    assert!(words.contains("--replicate"), "{words}");
 }
 
 #[test]

@@ -222,9 +222,14 @@ impl DrawList {
         options: &SurfaceOptions,
         instance_vertices: Option<u32>,
     ) -> bool {
-        self.prepared == prepared.number()
+        self.is_of(prepared)
             && self.options == *options
             && self.instance_vertices == instance_vertices
+    }
+
+    /// Whether it is of what was prepared.
+    pub(super) fn is_of(&self, prepared: &Prepared) -> bool {
+        self.prepared == prepared.number()
     }
 
     /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch.

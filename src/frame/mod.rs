@@ -11,6 +11,7 @@ mod draw_list;
 mod options;
 mod patterns;
 mod residence;
+mod tessellated;
 
 pub use backend::Backend;
 pub use cut::Cut;
@@ -20,3 +21,4 @@ pub use options::{Slots, SurfaceOptions};
 #[cfg(feature = "vulkan")]
 pub(crate) use patterns::{Key, key};
 pub use residence::Residence;
+pub use tessellated::{Tessellated, TessellatedPoint};

@@ -68,6 +68,7 @@ mod unit;
 mod vertices;
 
 use glam::Vec2;
+use rayon::prelude::*;
 
 use crate::abi;
 use crate::error::{Error, Result};
@@ -426,6 +427,13 @@ impl Pass {
             patch,
             self.domain.nearest(uv.to_array()).into(),
         )
+    }
+
+    /// The same at many places, each a patch and (u, v), in parallel in rayon's current pool.
+    pub fn evaluate_all(&self, controls: &Controls, places: &[(u32, Vec2)]) -> Vec<SurfacePoint> {
+        let places = places.par_iter().with_min_len(256);
+        let evaluate = |&(patch, uv): &(u32, Vec2)| self.evaluate(controls, patch as usize, uv);
+        places.map(evaluate).collect()
     }
 
     /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in

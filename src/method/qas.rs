@@ -5,6 +5,7 @@
 //!
 //! The printed listing passes an edge vertex twice (`pe0, pe2, pe2`) and pairs u with the second corner; this follows the section's formulas.
 
+mod bounded;
 mod hexagons;
 
 use glam::{Vec2, Vec3};
@@ -16,7 +17,7 @@ use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
 use crate::method::unit::unit;
 use crate::method::vertices::{self, control_points};
-use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces, patches};
+use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, patches};
 use crate::tessellation::Domain;
 
 use hexagons::Hexagons;
@@ -35,7 +36,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
-    covers: method::every_mesh,
+    covers: bounded::check,
     prepare,
 };
 

@@ -3,6 +3,7 @@
 
 mod agreement;
 mod border;
+mod bounded;
 mod cached;
 mod corner;
 mod irregular;
@@ -20,7 +21,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
-use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
+use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
 use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
@@ -43,7 +44,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
-    covers: method::every_mesh,
+    covers: bounded::check,
     prepare,
 };
 

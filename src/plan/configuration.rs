@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use crate::error::{Error, Misuse, Result};
 use crate::mesh::places::Places;
 use crate::mesh::sharpness::is_sharp;
-use crate::mesh::topology::Topology;
+use crate::mesh::topology::{FaceCorner, Topology};
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
 
 /// What a plan depends on. Equal configurations are equal words; the words hold the whole local mesh, so no two differ by accident.
@@ -52,10 +52,15 @@ impl Ring {
     /// The ring of the edge: the faces around its ends. It begins in one of the faces on the edge, and the edge runs from vertex 0 to
     /// vertex 1, so that the configuration is the least. None where there is no such edge.
     pub fn of_edge(topology: &Topology, edge: u32) -> Option<Ring> {
-        let rings = topology.edge_faces(edge).iter().map(|&face| {
-            let edges = topology.face_edges(face).iter();
-            let start = edges.into_iter().position(|&e| e == edge);
-            let start = start.expect("a face on the edge has it") as u32;
+        let rings = few(topology.edge_faces(edge)).iter().map(|&face| {
+            let [a, b] = topology.edge(edge).vertices;
+            let corner = topology.corner_of(face, a);
+            let runs_from_a = topology.face_edges(face)[corner as usize] == edge;
+            let start = if runs_from_a {
+                corner
+            } else {
+                topology.corner_of(face, b)
+            };
             Ring::around(topology, face, start, 2)
         });
         Ring::least(rings)
@@ -63,7 +68,7 @@ impl Ring {
 
     /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least. None of a vertex that no face has.
     pub fn of_vertex(topology: &Topology, vertex: u32) -> Option<Ring> {
-        let corners = topology.vertex_faces(vertex).iter();
+        let corners = few(topology.vertex_faces(vertex)).iter();
         Ring::least(corners.map(|at| Ring::around(topology, at.face, at.corner, 1)))
     }
 
@@ -93,6 +98,15 @@ impl Ring {
             start,
         }
     }
+}
+
+/// More faces than that around a vertex are many.
+const FEW: usize = 64;
+
+/// Where to begin, of the faces around a vertex or an edge: anywhere, so that what looks alike finds the same plan; but trying all of hundreds takes the square
+/// of their number, and hardly ever are two so large.
+fn few<T>(all: &[T]) -> &[T] {
+    if all.len() <= FEW { all } else { &all[..1] }
 }
 
 /// Every face that has one of so many vertices of `face`, which comes first: around each corner in turn, beginning with `start`, counter-clockwise and then, where a boundary stopped the
@@ -129,9 +143,28 @@ fn surrounding_faces(
                 continue 'corners;
             }
         }
-        around.iter().for_each(|corner| add(corner.face, vertex));
+        apart(topology, around).for_each(|corner| add(corner.face, vertex));
     }
     found
+}
+
+/// Faces around a vertex, some of which only it joins. Copies of a face have the same plan if many others follow in an order that does not depend on
+/// which copy asks.
+fn apart<'a>(
+    topology: &Topology,
+    around: &'a [FaceCorner],
+) -> impl Iterator<Item = FaceCorner> + use<'a> {
+    let mut sorted = Vec::new();
+    if around.len() > FEW {
+        sorted.extend_from_slice(around);
+        sorted.sort_by_cached_key(|at| -> SmallVec<[u32; 8]> {
+            let mut vertices = SmallVec::from_slice(topology.face(at.face));
+            vertices.rotate_left(at.corner as usize);
+            vertices
+        });
+    }
+    let few = if sorted.is_empty() { around } else { &[] };
+    few.iter().copied().chain(sorted)
 }
 
 /// Writes down a ring and numbers its vertices on the way.

@@ -1,6 +1,7 @@
 //! The limit surface at any point of any face, by recursive refinement.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
@@ -190,6 +191,14 @@ impl LimitSurface {
             dv: self.scale * jet.dv.value,
             normal: self.normal(face, corner, uv, &jet),
         })
+    }
+
+    /// The limit at many places, each a ptex face and (u, v), as [`evaluate`](Self::evaluate) has it: positions, derivatives and normals, in parallel in
+    /// rayon's current pool.
+    pub fn evaluate_all(&self, places: &[(usize, [f64; 2])]) -> Vec<Option<LimitSample>> {
+        let places = places.par_iter().with_min_len(64);
+        let evaluate = |&(ptex, [u, v]): &(usize, [f64; 2])| self.evaluate(ptex, u, v);
+        places.map(evaluate).collect()
     }
 
     /// Position and derivatives at (u, v) of the ptex face of a corner.

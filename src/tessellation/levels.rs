@@ -189,7 +189,7 @@ impl Levels {
     }
 
     /// An inside level of 1 counts as just over 1 unless all levels are 1.
-    fn inside_segments(&self, spacing: Spacing) -> u32 {
+    pub(super) fn inside_segments(&self, spacing: Spacing) -> u32 {
         let inside = spacing.segments(self.inside);
         if inside == 1 && self.edges.iter().any(|&level| spacing.segments(level) > 1) {
             2

@@ -13,7 +13,7 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj_bytes, replicated};
-use hullform::method::method;
+use hullform::method::method_for;
 use hullform::plan::PlanOptions;
 
 unsafe extern "C" {
@@ -115,7 +115,6 @@ fn meshes() -> Vec<(String, ControlMesh)> {
 }
 
 fn preparing(criterion: &mut Criterion) {
-    let quadtree = method("quadtree").expect("it is a method");
     for (name, mesh) in meshes() {
         let mut group = criterion.benchmark_group(format!("preparing {name}"));
         group.throughput(Throughput::Elements(mesh.face_count() as u64));
@@ -124,7 +123,8 @@ fn preparing(criterion: &mut Criterion) {
         });
         let model = Model::new(mesh.clone());
         group.bench_function("prepare", |bencher| {
-            bencher.iter(|| quadtree.prepare(black_box(&model), PlanOptions::default()));
+            let method = method_for(&model);
+            bencher.iter(|| method.prepare(black_box(&model), PlanOptions::default()));
         });
     }
 }

@@ -9,6 +9,7 @@ mod compare;
 mod devices;
 mod drawing;
 mod eye;
+mod evaluation;
 mod framing;
 mod gpu;
 mod interrupt;

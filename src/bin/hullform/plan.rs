@@ -3,10 +3,10 @@
 use crate::options::{self, Global};
 use crate::{model, print, print_json, progress};
 use clap::Args;
-use hullform::Result;
-use hullform::mesh::{ControlMesh, Model};
+use hullform::mesh::{ControlMesh, Model, replicated};
 use hullform::method::method;
 use hullform::plan::PlanOptions;
+use hullform::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -24,17 +24,46 @@ pub struct Arguments {
     /// Refine along creases instead of evaluating them directly
     #[arg(long)]
     no_direct_creases: bool,
+    /// Plan so many copies of the model on a grid: how cost grows with size
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    replicate: u32,
+    /// Threads to plan with [default: one a core]
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
 }
 
 /// Plans the model's faces and prints what came out.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
-    let mesh = model::load(Some(&arguments.model), &arguments.shape)?;
-    let facts = progress::during("planning", |_| facts(&mesh, arguments))?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| Error::Refused(format!("{error}; choose fewer --threads")))?;
+    let facts = pool.install(|| {
+        let started = Instant::now();
+        let mesh = model::load(Some(&arguments.model), &arguments.shape)?;
+        let read = started.elapsed().as_secs_f64();
+        let mesh = match arguments.replicate {
+            1 => mesh,
+            copies => replicated(&mesh, copies)?,
+        };
+        let named = |result| model::named(Some(&arguments.model), result);
+        progress::during("planning", |_| named(facts(mesh, arguments, read)))
+    })?;
     if global.prints_json() {
         print_json(&Value::Object(facts))
     } else {
         print(&as_text(&facts))
     }
+}
+
+/// The most memory that the program had so far; None where the system does not tell.
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kibibytes * 1024)
 }
 
 /// A line a fact, the values in a column; what belongs together stands below its heading.
@@ -53,15 +82,17 @@ fn as_text(facts: &Map<String, Value>) -> String {
 }
 
 /// What there is to tell about the plans of `mesh`, in the order to tell it.
-fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>> {
+fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<String, Value>> {
     let options = PlanOptions {
         max_level: arguments.max_level.into(),
         direct_creases: !arguments.no_direct_creases,
     };
     let started = Instant::now();
-    let model = Model::new(mesh.clone());
+    let model = Model::new(mesh);
+    let connected = started.elapsed().as_secs_f64();
     let prepared = method("quadtree")?.prepare(&model, options)?;
     let seconds = started.elapsed().as_secs_f64();
+    let mesh = model.mesh();
     let plans = prepared.plans.unwrap_or_default();
     let [internal, regular, boundary, crease, terminal, extraordinary] = plans.nodes;
     let levels = (0..=options.max_level).map(|level| {
@@ -98,6 +129,14 @@ fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>
         },
         "control_points": levels.collect::<Map<String, Value>>(),
         "build_seconds": seconds,
+        "seconds": {
+            "reading": read,
+            "topology": connected,
+            "preparing": seconds - connected,
+        },
+        "faces_per_second": mesh.face_count() as f64 / seconds.max(f64::MIN_POSITIVE),
+        "threads": rayon::current_num_threads(),
+        "peak_bytes": peak_bytes(),
     });
     let Value::Object(facts) = facts else {
         unreachable!("an object was written")

@@ -1,0 +1,108 @@
+//! Which meshes have too much around single vertices or within single faces.
+//!
+//! A patch lists its ring, and its plan depends on all of it (Brainerd et al. 2016, section 4.3): where n faces meet in a vertex, each of them names the n
+//! others, and so do the n parts of an n-gon. That is the square of what the file has. Up to a bound it is no matter; beyond, a file of a few hundred
+//! kilobytes would take minutes and gigabytes.
+
+use crate::error::{Error, Place, Result};
+use crate::mesh::Model;
+use crate::mesh::topology::Topology;
+
+/// Rings of so many corners of faces are what models are made of, however many there are.
+const ORDINARY: u64 = 1 << 10;
+
+/// The corners that all larger rings may have. A pole of 1,600 triangles, or two thousand quads, or an n-gon of 5,000 corners.
+const MOST: u64 = 3 << 23;
+
+/// Refuses a mesh whose rings have more corners than will be planned for.
+///
+/// # Errors
+/// [`Error::Input`] with the vertex or face that has the most around it.
+pub fn check(model: &Model) -> Result<()> {
+    let topology = model.topology();
+    let around = |vertex: u32| -> u64 {
+        let faces = topology.vertex_faces(vertex).iter();
+        faces.map(|at| topology.face(at.face).len() as u64).sum()
+    };
+    let around: Vec<u64> = (0..topology.vertex_count() as u32).map(around).collect();
+    let mut total = 0;
+    let mut met = Met::new(topology);
+    for face in (0..topology.face_count() as u32).filter(|&face| !topology.is_hole(face)) {
+        let vertices = topology.face(face);
+        let at_most: u64 = vertices.iter().map(|&v| around[v as usize]).sum();
+        if at_most <= ORDINARY {
+            continue;
+        }
+        let ring = met.ring(face, 2 * MOST);
+        if ring > ORDINARY {
+            let parts = if vertices.len() == 4 {
+                1
+            } else {
+                vertices.len() as u64
+            };
+            total += parts * ring;
+        }
+        if total > MOST {
+            return Err(refusal(topology, &around, face));
+        }
+    }
+    Ok(())
+}
+
+/// Counts what surrounds faces, each face once.
+struct Met<'a> {
+    topology: &'a Topology,
+    /// The last face around which each was met.
+    by: Vec<u32>,
+}
+
+impl Met<'_> {
+    fn new(topology: &Topology) -> Met<'_> {
+        Met {
+            topology,
+            by: Vec::new(),
+        }
+    }
+
+    /// The corners of a face and of all that touch it, or a number above `enough`.
+    fn ring(&mut self, face: u32, enough: u64) -> u64 {
+        self.by.resize(self.topology.face_count(), u32::MAX);
+        let mut corners = 0;
+        for &vertex in self.topology.face(face) {
+            for at in self.topology.vertex_faces(vertex) {
+                if std::mem::replace(&mut self.by[at.face as usize], face) != face {
+                    corners += self.topology.face(at.face).len() as u64;
+                }
+            }
+            if corners > enough {
+                break;
+            }
+        }
+        corners
+    }
+}
+
+/// By the face itself, if it is what is large, or else by the vertex where the most meets.
+fn refusal(topology: &Topology, around: &[u64], face: u32) -> Error {
+    let vertices = topology.face(face);
+    let beside = |&&vertex: &&u32| around[vertex as usize] - vertices.len() as u64;
+    let most = vertices.iter().max_by_key(beside);
+    let &vertex = most.expect("a face has vertices");
+    let (faces, corners) = (topology.vertex_faces(vertex).len(), vertices.len());
+    if corners >= faces {
+        return Error::input(
+            Place::Face(face as usize),
+            format!(
+                "it has {corners} corners, each a patch that depends on all others: that is more than will be planned for"
+            ),
+            "divide the face, or choose another method",
+        );
+    }
+    Error::input(
+        Place::Vertex(vertex as usize),
+        format!(
+            "{faces} faces meet there, each a patch that depends on all others: that is more than will be planned for"
+        ),
+        "remove faces that are there twice, divide the fan of faces, or choose another method",
+    )
+}

@@ -122,13 +122,7 @@ impl ColouredTriangles {
             of_vertices,
             room,
         )?;
-        self.add_buffer(
-            "indices",
-            Usage::INDEX_BUFFER,
-            CpuToGpu,
-            of_triangles,
-            room,
-        )?;
+        self.add_buffer("indices", Usage::INDEX_BUFFER, CpuToGpu, of_triangles, room)?;
         let marks = vec![0; 4 * vertices.len().max(1) * room];
         self.add_buffer("marks", Usage::STORAGE_BUFFER, GpuToCpu, &marks, 1)?;
         self.indices = 3 * triangles.len() as u32;

@@ -256,8 +256,7 @@ impl Swapchain {
         let physical = self.device.info().physical;
         let (functions, surface) = (&self.surface.functions, self.surface.raw);
         // SAFETY: device and surface are of one instance, here and below.
-        let able =
-            unsafe { functions.get_physical_device_surface_capabilities(physical, surface) };
+        let able = unsafe { functions.get_physical_device_surface_capabilities(physical, surface) };
         let able = able.map_err(failed("vkGetPhysicalDeviceSurfaceCapabilitiesKHR"))?;
         // SAFETY: as above.
         let modes =
@@ -267,7 +266,9 @@ impl Swapchain {
         self.destroy_views();
         let old = std::mem::take(&mut self.raw);
         self.extent = extent(&able, size);
-        self.readable = able.supported_usage_flags.contains(vk::ImageUsageFlags::TRANSFER_SRC);
+        self.readable = able
+            .supported_usage_flags
+            .contains(vk::ImageUsageFlags::TRANSFER_SRC);
         let made = if self.extent.width == 0 || self.extent.height == 0 {
             Ok(vk::SwapchainKHR::null())
         } else {
@@ -373,8 +374,8 @@ impl Swapchain {
         let device = self.device.raw();
         let (acquired, drawn) = ([self.acquired], [self.drawn[number]]);
         // Where an image is first used, by a copy or as an attachment.
-        let stages = [vk::PipelineStageFlags::TRANSFER
-            | vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT];
+        let stages =
+            [vk::PipelineStageFlags::TRANSFER | vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT];
         let buffers = [self.cmd];
         let submit = vk::SubmitInfo::default()
             .wait_semaphores(&acquired)
@@ -527,8 +528,8 @@ impl Swapchain {
             .map_err(failed("vkAllocateCommandBuffers"))?[0];
         let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
         // SAFETY: as above.
-        self.fence = unsafe { device.create_fence(&signalled, None) }
-            .map_err(failed("vkCreateFence"))?;
+        self.fence =
+            unsafe { device.create_fence(&signalled, None) }.map_err(failed("vkCreateFence"))?;
         // SAFETY: as above.
         self.acquired =
             unsafe { device.create_semaphore(&vk::SemaphoreCreateInfo::default(), None) }

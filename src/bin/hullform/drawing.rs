@@ -24,7 +24,7 @@ pub struct Drawing<'a> {
 
 /// A bench for what is not seen: nothing is rasterised, but draws need a render pass.
 pub fn blind(gpu: &Gpu) -> Result<Bench> {
-    Bench::new(OffscreenTarget::new(&gpu.device, 1, 1, 1)?)
+    gpu.bench(OffscreenTarget::new(&gpu.device, 1, 1, 1)?)
 }
 
 /// Prepares a model by a method, and says when that only approximates what nobody asked to be approximated.

@@ -17,6 +17,8 @@ mod manual;
 mod model;
 mod options;
 mod output;
+mod pipelines;
+mod places;
 mod plan;
 mod progress;
 mod refused;

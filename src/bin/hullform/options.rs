@@ -30,6 +30,9 @@ pub struct Global {
     /// Switch off the workarounds for driver faults (see `hullform devices`)
     #[arg(long, global = true)]
     pub no_workarounds: bool,
+    /// Folder in which what the driver keeps of its pipelines is kept from run to run, or `none` [default: hullform among the user's caches]
+    #[arg(long, global = true, value_name = "FOLDER|none")]
+    pub pipeline_cache: Option<PathBuf>,
     /// Print results as JSON
     // `verify` has an option of the same id that takes a file, hence the type.
     #[arg(long, id = "json", global = true, num_args = 0..=1, require_equals = true, default_missing_value = "-", value_name = "", hide_possible_values = true, value_parser = Json::printed)]

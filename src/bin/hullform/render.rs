@@ -10,7 +10,7 @@ use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
-use hullform::host::{Area, Bench, OffscreenTarget, Shot, Style};
+use hullform::host::{Area, Bench, Encoding, OffscreenTarget, Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
@@ -199,15 +199,17 @@ pub fn bench(gpu: &Gpu, width: u32, height: u32) -> Result<(Bench, u32)> {
     } else {
         1
     };
-    let mut target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
+    let size = [width * factor, height * factor];
     // Until it is known where something is to be seen.
-    target.confine(Area {
+    let pixel = Area {
         x: 0,
         y: 0,
         width: 1,
         height: 1,
-    });
-    Ok((Bench::new(target)?, factor))
+    };
+    let format = Encoding::default().format();
+    let target = OffscreenTarget::cropped(&gpu.device, size, pixel, SAMPLES, format)?;
+    Ok((gpu.bench(target)?, factor))
 }
 
 /// Draws a model lit, by a method, as seen in `view`: in an area of the picture, whose pixels are drawn as squares of `factor`.
@@ -259,12 +261,12 @@ fn draw(gpu: &Gpu, bench: &mut Bench, factor: u32, scene: &Scene<'_>) -> Result<
         width,
         height,
     } = seen.area;
-    bench.target_mut().confine(Area {
+    bench.target_mut().crop(Area {
         x: x * factor,
         y: y * factor,
         width: width * factor,
         height: height * factor,
-    });
+    })?;
     let draw = |prepared, slots| draw_with(gpu, bench, scene, prepared, plan_seconds, &seen, slots);
     let stats = draw(prepared, scene.slots)?;
     if stats["ring"]["overflows"] == 0 {

@@ -12,10 +12,20 @@ const FOV: f64 = 32.0;
 #[derive(Args, Clone)]
 pub struct Standpoint {
     /// Look from this place of the model's own space, instead of --camera; with --to
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "to")]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        requires = "to"
+    )]
     from: Option<Point>,
     /// What --from looks at; it stands in the middle of the picture
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "from")]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        requires = "from"
+    )]
     to: Option<Point>,
     /// Angle from the lower to the upper side of what --from sees, in degrees [default: 32]
     #[arg(long, value_name = "DEGREES", requires = "from", conflicts_with = "parallel", value_parser = angle)]

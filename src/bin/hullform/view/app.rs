@@ -49,7 +49,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         open: None,
         result: Ok(()),
     };
-    events.run_app(&mut app).map_err(|error| no_display(&error.to_string()))?;
+    events
+        .run_app(&mut app)
+        .map_err(|error| no_display(&error.to_string()))?;
     app.finish()
 }
 
@@ -163,12 +165,11 @@ impl Open {
         let window = Arc::new(window.map_err(|error| no_display(&error.to_string()))?);
         let (instance, surface) = surface(&window, global.validation)?;
         let device = Device::open_for(&instance, global.device.as_deref(), &surface)?;
-        let gpu = Gpu::of(instance.clone(), device, global);
+        let gpu = Gpu::of(instance.clone(), device, global)?;
         let PhysicalSize { width, height } = window.inner_size();
         let canvas = Canvas::new(&gpu.device, surface, [width, height], samples(&gpu.device))?;
         let format = canvas.scene_format();
-        let cache = super::settings::pipelines().filter(|_| !arguments.fresh);
-        let context = Context::new(gpu, global, format, samples(canvas.device()), cache)?;
+        let context = Context::new(gpu, global, format, samples(canvas.device()))?;
         let wake: Wake = Arc::new(move || {
             // The loop has ended when this fails.
             let _ = proxy.send_event(Woken);
@@ -240,10 +241,18 @@ impl Open {
         let input = self.input.take_egui_input(&self.window);
         let output = self.program.panels(input);
         self.program.start()?;
-        let delay = output.viewport_output.values().map(|own| own.repaint_delay).min();
-        self.input.handle_platform_output(&self.window, output.platform_output);
+        let delay = output
+            .viewport_output
+            .values()
+            .map(|own| own.repaint_delay)
+            .min();
+        self.input
+            .handle_platform_output(&self.window, output.platform_output);
         self.panels.scale = output.pixels_per_point;
-        self.panels.primitives = self.program.egui.tessellate(output.shapes, output.pixels_per_point);
+        self.panels.primitives = self
+            .program
+            .egui
+            .tessellate(output.shapes, output.pixels_per_point);
         self.panels.textures.append(output.textures_delta);
         if self.program.grant()? {
             return Ok(true);
@@ -293,7 +302,10 @@ impl Open {
         if let Some(file) = &self.settings {
             let settings = Settings::of_viewer(&self.program.viewer, size);
             if let Err(error) = settings.write(file) {
-                tracing::warn!("{}: {error}; the window will not be as it was left", file.display());
+                tracing::warn!(
+                    "{}: {error}; the window will not be as it was left",
+                    file.display()
+                );
             }
         }
         let Open {
@@ -307,8 +319,14 @@ impl Open {
 /// An instance that draws to windows, and the window's surface.
 fn surface(window: &Window, validation: bool) -> Result<(Instance, WindowSurface)> {
     let handle = |error: &dyn std::fmt::Display| no_display(&error.to_string());
-    let display = window.display_handle().map_err(|error| handle(&error))?.as_raw();
-    let raw = window.window_handle().map_err(|error| handle(&error))?.as_raw();
+    let display = window
+        .display_handle()
+        .map_err(|error| handle(&error))?
+        .as_raw();
+    let raw = window
+        .window_handle()
+        .map_err(|error| handle(&error))?
+        .as_raw();
     let names = ash_window::enumerate_required_extensions(display);
     let names = names.map_err(|error| handle(&error))?;
     let names: Vec<&'static std::ffi::CStr> = names
@@ -318,9 +336,8 @@ fn surface(window: &Window, validation: bool) -> Result<(Instance, WindowSurface
         .collect();
     let instance = Instance::with_extensions(validation, &names)?;
     // SAFETY: the instance has the extensions for this display; the window outlives the surface, since it is dropped last.
-    let made = unsafe {
-        ash_window::create_surface(instance.entry(), instance.raw(), display, raw, None)
-    };
+    let made =
+        unsafe { ash_window::create_surface(instance.entry(), instance.raw(), display, raw, None) };
     let made = made.map_err(super::canvas::vulkan("creating the window's surface"))?;
     // SAFETY: it was just made from this instance.
     let surface = unsafe { WindowSurface::new(&instance, made) };

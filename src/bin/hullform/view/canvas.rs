@@ -389,7 +389,15 @@ unsafe fn cmd_copy(
             return;
         }
         let second = [barrier(to, Access::TRANSFER_WRITE)];
-        device.cmd_pipeline_barrier(cmd, Stage::TRANSFER, Stage::TRANSFER, none, &[], &[], &second);
+        device.cmd_pipeline_barrier(
+            cmd,
+            Stage::TRANSFER,
+            Stage::TRANSFER,
+            none,
+            &[],
+            &[],
+            &second,
+        );
         let from = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
         device.cmd_copy_image(cmd, picture, from, image.raw, to, &[region]);
     }

@@ -2,8 +2,8 @@
 
 use egui::{Key, Modifiers};
 use hullform::gpu::{Backend, Residence};
-use hullform::method::METHODS;
 use hullform::mesh::Scheme;
+use hullform::method::METHODS;
 use hullform::tessellation::Spacing;
 
 use super::context::greatest_level;
@@ -144,7 +144,11 @@ pub const KEYS: &[Binding] = &[
     plain(Key::Num1, Command::Look(Preset::Front), "from the front"),
     plain(Key::Num2, Command::Look(Preset::Side), "from the side"),
     plain(Key::Num3, Command::Look(Preset::Top), "from the top"),
-    plain(Key::Num4, Command::Look(Preset::ThreeQuarter), "three-quarter view"),
+    plain(
+        Key::Num4,
+        Command::Look(Preset::ThreeQuarter),
+        "three-quarter view",
+    ),
     plain(Key::ArrowLeft, Command::Turn(-10.0, 0.0), "turn left"),
     plain(Key::ArrowRight, Command::Turn(10.0, 0.0), "turn right"),
     plain(Key::ArrowUp, Command::Turn(0.0, 10.0), "turn up"),
@@ -187,7 +191,11 @@ pub const KEYS: &[Binding] = &[
     plain(Key::F12, Command::Screenshot, "save what is seen"),
     shift(Key::F12, Command::Render, "save what render makes of it"),
     control(Key::C, Command::CopyCommand, "copy the command line"),
-    plain(Key::Period, Command::Neighbour(true), "next file of the folder"),
+    plain(
+        Key::Period,
+        Command::Neighbour(true),
+        "next file of the folder",
+    ),
     plain(Key::Comma, Command::Neighbour(false), "the file before"),
     plain(Key::F5, Command::Reload, "read the files again"),
     plain(Key::Tab, Command::Panels, "panels"),
@@ -388,24 +396,35 @@ impl Viewer {
 
     /// The sharpness of what is picked: of all edges and vertices the first one's.
     pub fn picked_sharpness(&mut self) -> Option<f32> {
-        let (edges, vertices) = (self.selection.edges.clone(), self.selection.vertices.clone());
+        let (edges, vertices) = (
+            self.selection.edges.clone(),
+            self.selection.vertices.clone(),
+        );
         let draft = self.edited()?.history()?.draft();
         let edge = edges.first().map(|edge| draft.creases.get(edge));
         let vertex = vertices.first().map(|vertex| draft.corners.get(vertex));
-        edge.or(vertex).map(|sharpness| sharpness.copied().unwrap_or(0.0))
+        edge.or(vertex)
+            .map(|sharpness| sharpness.copied().unwrap_or(0.0))
     }
 
     /// Changes the sharpness of all edges and vertices that are picked, as a part of a drag or by itself.
     pub fn sharpen(&mut self, to: impl Fn(f32) -> f32, dragging: bool) {
-        let (edges, vertices) = (self.selection.edges.clone(), self.selection.vertices.clone());
+        let (edges, vertices) = (
+            self.selection.edges.clone(),
+            self.selection.vertices.clone(),
+        );
         let Some(part) = self.edited() else { return };
-        let Some(history) = part.history() else { return };
+        let Some(history) = part.history() else {
+            return;
+        };
         let draft = history.draft();
         let both = |was: Option<&f32>| {
             let was = was.copied().unwrap_or(0.0);
             [was, to(was).clamp(0.0, 10.0)]
         };
-        let creases = edges.iter().map(|edge| (*edge, both(draft.creases.get(edge))));
+        let creases = edges
+            .iter()
+            .map(|edge| (*edge, both(draft.creases.get(edge))));
         let creases: std::collections::BTreeMap<_, _> = creases.collect();
         let corners = vertices.iter().map(|v| (*v, both(draft.corners.get(v))));
         let corners: std::collections::BTreeMap<_, _> = corners.collect();
@@ -420,9 +439,13 @@ impl Viewer {
     fn turn_holes(&mut self) {
         let faces = self.selection.faces.clone();
         let Some(part) = self.edited() else { return };
-        let Some(history) = part.history() else { return };
+        let Some(history) = part.history() else {
+            return;
+        };
         let holes = &history.draft().holes;
-        let turned = faces.iter().map(|face| (*face, [holes.contains(face), !holes.contains(face)]));
+        let turned = faces
+            .iter()
+            .map(|face| (*face, [holes.contains(face), !holes.contains(face)]));
         let turned: std::collections::BTreeMap<_, _> = turned.collect();
         if !turned.is_empty() {
             part.change(Change::Holes(turned), false);
@@ -438,7 +461,9 @@ impl Viewer {
         };
         match super::folder::neighbour(&file, ahead) {
             Some(other) => self.open([Some(other)]),
-            None => self.notices.tell("there is no other OBJ file in the folder"),
+            None => self
+                .notices
+                .tell("there is no other OBJ file in the folder"),
         }
     }
 }
@@ -450,9 +475,9 @@ mod tests {
     #[test]
     fn no_key_does_two_things() {
         for (number, one) in KEYS.iter().enumerate() {
-            let clash = KEYS[..number].iter().any(|other| {
-                (one.key, one.modifiers) == (other.key, other.modifiers)
-            });
+            let clash = KEYS[..number]
+                .iter()
+                .any(|other| (one.key, one.modifiers) == (other.key, other.modifiers));
             assert!(!clash, "{}", key_words(one));
         }
     }

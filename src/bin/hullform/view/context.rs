@@ -1,6 +1,5 @@
 //! What all surfaces of the window share on the device: layouts, pipelines with their cache on disk, and how a model gets there.
 
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -14,7 +13,6 @@ use hullform::host::{Device, OffscreenTarget, Owned, Style};
 use hullform::mesh::{ControlMesh, Model};
 use hullform::method::{MethodOptions, Prepared, method, prepare_by_default};
 
-use super::canvas::vulkan;
 use crate::gpu::Gpu;
 use crate::options::Global;
 
@@ -38,7 +36,6 @@ pub type Key = (Vec<&'static str>, Style);
 pub struct Context {
     pipelines: Mutex<Vec<(Key, Arc<Owned<Pipelines>>)>>,
     layout: Owned<Layout>,
-    cache: PipelineCache,
     /// A picture like those that are drawn into, which pipelines are made for: it stays when the window changes.
     mould: OffscreenTarget,
     /// The device.
@@ -71,13 +68,7 @@ impl Drawn {
 
 impl Context {
     /// What surfaces share that are drawn in pictures of a format, with so many samples a pixel.
-    pub fn new(
-        gpu: Gpu,
-        global: &Global,
-        format: vk::Format,
-        samples: u32,
-        cache: Option<PathBuf>,
-    ) -> Result<Context> {
+    pub fn new(gpu: Gpu, global: &Global, format: vk::Format, samples: u32) -> Result<Context> {
         let device = &gpu.device;
         // SAFETY: the device is live.
         let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
@@ -85,7 +76,6 @@ impl Context {
             pipelines: Mutex::default(),
             // SAFETY: the layout was just made by this device.
             layout: unsafe { Owned::new(device, layout) },
-            cache: PipelineCache::open(device, cache)?,
             mould: OffscreenTarget::with_format(device, 1, 1, samples, format)?,
             global: global.clone(),
             gpu,
@@ -141,12 +131,20 @@ impl Context {
         let surface = unsafe {
             let allocator = &mut *device.allocator();
             let raw = device.raw();
-            TessellatedSurface::new(raw, allocator, layout, model, prepared, workarounds, options)
+            TessellatedSurface::new(
+                raw,
+                allocator,
+                layout,
+                model,
+                prepared,
+                workarounds,
+                options,
+            )
         }?;
         // SAFETY: it was just made by this device.
         let mut surface = unsafe { Owned::new(device, surface) };
         let made = (recipe.residence == Residence::Cache).then(|| {
-            let (cache, prepared) = (self.cache.raw, surface.prepared());
+            let (cache, prepared) = (self.gpu.pipeline_cache(), surface.prepared());
             // SAFETY: all of one live device.
             unsafe { CachePipelines::new(device.raw(), layout, cache, prepared) }
         });
@@ -197,7 +195,7 @@ impl Context {
             fragment: None,
             layout: None,
         };
-        let (device, cache) = (self.device(), self.cache.raw);
+        let (device, cache) = (self.device(), self.gpu.pipeline_cache());
         // SAFETY: all of one live device.
         let made = unsafe { Pipelines::new(device.raw(), &self.layout, cache, prepared, &options) };
         // SAFETY: they were just made by this device.
@@ -208,11 +206,16 @@ impl Context {
 
     /// Writes what pipelines were made of, for the next start.
     pub fn save_cache(&self) {
-        self.cache.save();
+        // A device that cannot tell has other troubles, of which others tell.
+        if let Err(error) = self.gpu.keep_pipelines() {
+            tracing::info!("{error}");
+        }
     }
 
     fn kept(&self) -> MutexGuard<'_, Vec<(Key, Arc<Owned<Pipelines>>)>> {
-        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
+        self.pipelines
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -236,73 +239,4 @@ pub fn under_scheme(
         false => mesh,
     };
     mesh.with_scheme(scheme)
-}
-
-/// What pipelines are made of, kept on disk: they take half a second each without.
-struct PipelineCache {
-    device: Device,
-    raw: vk::PipelineCache,
-    file: Option<PathBuf>,
-}
-
-impl PipelineCache {
-    /// A cache with what the file has; drivers know their own data, and ignore what is another's.
-    fn open(device: &Device, file: Option<PathBuf>) -> Result<PipelineCache> {
-        let bytes = file.as_deref().map(std::fs::read).and_then(|read| read.ok());
-        let bytes = bytes.filter(|bytes| is_of(device, bytes)).unwrap_or_default();
-        let info = vk::PipelineCacheCreateInfo::default().initial_data(&bytes);
-        // SAFETY: the device is live; the data begin with this device's own header, or there are none.
-        let raw = unsafe { device.raw().create_pipeline_cache(&info, None) }
-            .map_err(vulkan("vkCreatePipelineCache"))?;
-        let device = device.clone();
-        Ok(PipelineCache { device, raw, file })
-    }
-
-    /// Writes it. That it cannot be written costs the next start some time, and nothing else.
-    fn save(&self) {
-        let Some(file) = &self.file else { return };
-        // SAFETY: the device is live; the cache may be read while pipelines are made.
-        let bytes = unsafe { self.device.raw().get_pipeline_cache_data(self.raw) };
-        if let Ok(bytes) = bytes {
-            if let Err(error) = replace(file, &bytes) {
-                tracing::info!("{}: {error}", file.display());
-            }
-        }
-    }
-}
-
-impl Drop for PipelineCache {
-    fn drop(&mut self) {
-        if !self.device.is_hung() {
-            // SAFETY: ours; pipelines do not need it once they are made.
-            unsafe { self.device.raw().destroy_pipeline_cache(self.raw, None) };
-        }
-    }
-}
-
-/// Whether data begin with the header of this device and driver (Vulkan spec, VkPipelineCacheHeaderVersionOne).
-fn is_of(device: &Device, bytes: &[u8]) -> bool {
-    // SAFETY: the physical device is that of the live instance.
-    let properties = unsafe {
-        let instance = device.instance().raw();
-        instance.get_physical_device_properties(device.info().physical)
-    };
-    let word = |at: usize| {
-        let word = bytes.get(4 * at..4 * at + 4)?;
-        Some(u32::from_le_bytes(word.try_into().ok()?))
-    };
-    word(1) == Some(vk::PipelineCacheHeaderVersion::ONE.as_raw() as u32)
-        && word(2) == Some(properties.vendor_id)
-        && word(3) == Some(properties.device_id)
-        && bytes.get(16..32) == Some(&properties.pipeline_cache_uuid)
-}
-
-/// Puts a file into its place when it is complete, in a folder that is made.
-pub fn replace(file: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = file.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let temporary = tempfile::NamedTempFile::new_in(folder)?;
-    std::fs::write(temporary.path(), bytes)?;
-    temporary.persist(file)?;
-    Ok(())
 }

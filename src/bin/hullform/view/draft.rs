@@ -290,7 +290,11 @@ impl History {
         self.undone.clear();
         let continues = self.dragging && dragging;
         self.dragging = dragging;
-        let absorbed = continues && self.done.last_mut().is_some_and(|last| last.absorb(&change));
+        let absorbed = continues
+            && self
+                .done
+                .last_mut()
+                .is_some_and(|last| last.absorb(&change));
         if !absorbed {
             self.done.push(change);
         }

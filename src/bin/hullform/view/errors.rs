@@ -166,7 +166,10 @@ impl Legend {
 
     /// What is shown, and the greatest of it.
     pub fn title(&self) -> String {
-        let greatest = self.greatest.iter().map(|greatest| format!("{greatest:.1e}"));
+        let greatest = self
+            .greatest
+            .iter()
+            .map(|greatest| format!("{greatest:.1e}"));
         let greatest: Vec<String> = greatest.collect();
         let what = match self.kind {
             ErrorKind::Position => "position error / diagonal",

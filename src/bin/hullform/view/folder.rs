@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 /// The OBJ file that comes after another in its folder, or before it, around; None where there is no other.
 pub fn neighbour(file: &Path, ahead: bool) -> Option<PathBuf> {
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = file
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     let entries = std::fs::read_dir(folder).ok()?;
     let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));

@@ -54,7 +54,8 @@ impl Notices {
 
     /// What is to be seen now.
     pub fn seen(&mut self) -> &[Notice] {
-        self.all.retain(|notice| notice.since.elapsed() < notice.stay());
+        self.all
+            .retain(|notice| notice.since.elapsed() < notice.stay());
         &self.all
     }
 
@@ -70,7 +71,10 @@ impl Notices {
 
     /// How long nothing changes.
     pub fn until_change(&self) -> Option<Duration> {
-        let left = self.all.iter().map(|n| n.stay().saturating_sub(n.since.elapsed()));
+        let left = self
+            .all
+            .iter()
+            .map(|n| n.stay().saturating_sub(n.since.elapsed()));
         left.min()
     }
 }

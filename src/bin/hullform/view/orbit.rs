@@ -206,7 +206,10 @@ mod tests {
                 };
                 orbit.fit(corners().into_iter(), aspect);
                 let most = reach(&orbit, aspect).max_element();
-                assert!((FILL - 0.03..=FILL + 0.01).contains(&most), "{most} {orbit:?}");
+                assert!(
+                    (FILL - 0.03..=FILL + 0.01).contains(&most),
+                    "{most} {orbit:?}"
+                );
             }
         }
     }
@@ -227,7 +230,10 @@ mod tests {
             },
         );
         let seen = clip.project_point3(point).truncate();
-        assert!((seen - at * DVec2::new(1.0, -1.0)).length() < 1e-9, "{seen}");
+        assert!(
+            (seen - at * DVec2::new(1.0, -1.0)).length() < 1e-9,
+            "{seen}"
+        );
     }
 
     #[test]

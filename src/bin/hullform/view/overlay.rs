@@ -115,7 +115,10 @@ impl Pen<'_> {
             }
         }
         let Some(model) = &part.model else { return };
-        let faces = selection.faces.iter().filter(|&&face| (face as usize) < model.mesh().face_count());
+        let faces = selection
+            .faces
+            .iter()
+            .filter(|&&face| (face as usize) < model.mesh().face_count());
         for &face in faces {
             let corners = model.mesh().face(face as usize);
             let next = corners.iter().cycle().skip(1);
@@ -175,7 +178,8 @@ impl Pen<'_> {
     fn quad(&mut self, corners: [(DVec4, DVec2); 4], [r, g, b]: [f32; 3]) {
         let first = self.overlay.vertices.len() as u32;
         for (clip, off) in corners {
-            let moved = clip + (off * clip.w).extend(0.0).extend(0.0) - DVec4::Z * (BEFORE * clip.w);
+            let moved =
+                clip + (off * clip.w).extend(0.0).extend(0.0) - DVec4::Z * (BEFORE * clip.w);
             self.overlay.vertices.push(ColouredVertex {
                 clip: moved.as_vec4().to_array(),
                 colour: [r, g, b, 1.0],

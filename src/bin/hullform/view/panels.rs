@@ -106,7 +106,11 @@ fn side(ctx: &Context, name: &'static str, left: bool, contents: impl FnOnce(&mu
 /// A heading with room above.
 fn heading(ui: &mut Ui, words: &str) {
     ui.add_space(6.0);
-    ui.label(RichText::new(words.to_uppercase()).size(10.5).color(Color32::from_rgb(132, 138, 148)));
+    ui.label(
+        RichText::new(words.to_uppercase())
+            .size(10.5)
+            .color(Color32::from_rgb(132, 138, 148)),
+    );
     ui.add_space(1.0);
 }
 
@@ -114,10 +118,14 @@ fn heading(ui: &mut Ui, words: &str) {
 fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let size = egui::vec2(74.0, ui.spacing().interact_size.y);
-        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.set_min_width(size.x);
-            ui.label(RichText::new(name).color(Color32::from_rgb(160, 165, 174)));
-        });
+        ui.allocate_ui_with_layout(
+            size,
+            egui::Layout::left_to_right(egui::Align::Center),
+            |ui| {
+                ui.set_min_width(size.x);
+                ui.label(RichText::new(name).color(Color32::from_rgb(160, 165, 174)));
+            },
+        );
         contents(ui)
     })
     .inner
@@ -147,7 +155,11 @@ fn choice<T: PartialEq + Clone>(
 fn notices(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
     let left = if viewer.panels { WIDTH + 16.0 } else { 16.0 };
     let offset = egui::vec2(left, -14.0);
-    let errors: Vec<String> = viewer.parts.iter().filter_map(|part| part.error.clone()).collect();
+    let errors: Vec<String> = viewer
+        .parts
+        .iter()
+        .filter_map(|part| part.error.clone())
+        .collect();
     let area = egui::Area::new("notices".into())
         .anchor(egui::Align2::LEFT_BOTTOM, offset)
         .interactable(false);
@@ -173,6 +185,11 @@ fn bubble(ui: &mut Ui, words: &str, is_error: bool) {
     } else {
         Color32::from_rgba_unmultiplied(24, 26, 30, 215)
     };
-    let frame = Frame::new().fill(fill).corner_radius(6).inner_margin(Margin::symmetric(10, 6));
-    frame.show(ui, |ui| ui.label(RichText::new(words).color(Color32::from_gray(232))));
+    let frame = Frame::new()
+        .fill(fill)
+        .corner_radius(6)
+        .inner_margin(Margin::symmetric(10, 6));
+    frame.show(ui, |ui| {
+        ui.label(RichText::new(words).color(Color32::from_gray(232)))
+    });
 }

@@ -31,7 +31,11 @@ pub fn words(viewer: &Viewer, shape: &Shape, global: &Global, file: &Path) -> Ve
     words.push(format!("--spacing={}", cutting.spacing.name()));
     words.push(format!("--backend={}", cutting.backend.name()));
     words.push(format!("--residence={}", cutting.residence.name()));
-    words.extend(cutting.pixels.map(|pixels| format!("--adaptive=screen:{pixels}")));
+    words.extend(
+        cutting
+            .pixels
+            .map(|pixels| format!("--adaptive=screen:{pixels}")),
+    );
     words.push(format!("--cull={}", cutting.cull.name()));
     words.extend(cutting.amplify.then(|| "--amplify-cracks".into()));
     let shading = look.shading.to_possible_value();
@@ -39,9 +43,18 @@ pub fn words(viewer: &Viewer, shape: &Shape, global: &Global, file: &Path) -> Ve
     words.extend(look.wireframe.then(|| "--wireframe".into()));
     words.push(format!("--displace={}", look.displace));
     words.extend(Standpoint::words(&viewer.orbit.eye()));
-    words.push(format!("--size={}x{}", area.width.max(1), area.height.max(1)));
+    words.push(format!(
+        "--size={}x{}",
+        area.width.max(1),
+        area.height.max(1)
+    ));
     words.push(format!("--output={}", file.to_string_lossy()));
-    words.extend(global.device.iter().map(|device| format!("--device={device}")));
+    words.extend(
+        global
+            .device
+            .iter()
+            .map(|device| format!("--device={device}")),
+    );
     words.extend(global.no_workarounds.then(|| "--no-workarounds".into()));
     words.push("--slots=host".into());
     words.push(format!("--ring-bytes={}", global.ring_bytes));
@@ -54,12 +67,18 @@ pub fn left_out(viewer: &Viewer) -> Vec<&'static str> {
     let changed = parts.first().and_then(|part| part.history());
     let left_out = [
         (parts.len() > 1, "all models but the first"),
-        (changed.is_some_and(|history| history.is_changed()), "changes that were not saved"),
+        (
+            changed.is_some_and(|history| history.is_changed()),
+            "changes that were not saved",
+        ),
         (viewer.look.cage, "the cage"),
         (viewer.look.numbers, "numbers"),
         (viewer.compare.map.is_some(), "the map of errors"),
         (viewer.recipes().len() > 1, "the other method"),
-        (viewer.frozen.is_some() && viewer.cutting.pixels.is_some(), "the frozen camera"),
+        (
+            viewer.frozen.is_some() && viewer.cutting.pixels.is_some(),
+            "the frozen camera",
+        ),
         (viewer.deform.kind != super::deform::Kind::None, "motion"),
     ];
     let left_out = left_out.into_iter().filter(|(is_so, _)| *is_so);
@@ -154,7 +173,10 @@ mod tests {
         for orthographic in [false, true] {
             viewer.orbit.orthographic = orthographic;
             let parsed = Arguments::try_parse_from(["hullform", "devices"]);
-            let global = parsed.map(|parsed| parsed.global).ok().expect("it is taken");
+            let global = parsed
+                .map(|parsed| parsed.global)
+                .ok()
+                .expect("it is taken");
             let shape = Shape {
                 scheme: None,
                 triangulate: Triangulate::Fan,
@@ -172,7 +194,13 @@ mod tests {
     #[test]
     fn blue_and_red_change_places_where_blue_is_first() {
         use hullform::ash::vk::Format;
-        assert_eq!(swizzled(&[1, 2, 3, 0], Format::B8G8R8A8_SRGB), [3, 2, 1, 255]);
-        assert_eq!(swizzled(&[1, 2, 3, 0], Format::R8G8B8A8_UNORM), [1, 2, 3, 255]);
+        assert_eq!(
+            swizzled(&[1, 2, 3, 0], Format::B8G8R8A8_SRGB),
+            [3, 2, 1, 255]
+        );
+        assert_eq!(
+            swizzled(&[1, 2, 3, 0], Format::R8G8B8A8_UNORM),
+            [1, 2, 3, 255]
+        );
     }
 }

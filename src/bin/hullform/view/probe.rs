@@ -66,7 +66,10 @@ impl Ray {
 
     /// Whether it meets a box before a distance.
     fn meets(&self, low: DVec3, high: DVec3, before: f64) -> bool {
-        let (a, b) = ((low - self.from) / self.along, (high - self.from) / self.along);
+        let (a, b) = (
+            (low - self.from) / self.along,
+            (high - self.from) / self.along,
+        );
         let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
         // Where the ray runs in a box's side, quotients are no numbers.
         !(near > far || far < 0.0 || near > before)
@@ -145,13 +148,21 @@ impl Measured {
             DVec3::new(u, v, 0.0)
         });
         let face = corners[0].face;
-        let truth = self.limit.evaluate(face as usize, uv.x.clamp(0.0, 1.0), uv.y.clamp(0.0, 1.0));
+        let truth = self
+            .limit
+            .evaluate(face as usize, uv.x.clamp(0.0, 1.0), uv.y.clamp(0.0, 1.0));
         let placement = self.model.placement();
         let diagonal = self.model.diagonal().max(f64::MIN_POSITIVE);
         let error = |truth: DVec3| placement.local(truth).distance(placement.local(at)) / diagonal;
         let angle = |truth: DVec3| {
             let both = normal != DVec3::ZERO && truth != DVec3::ZERO;
-            both.then(|| normal.cross(truth).length().atan2(normal.dot(truth)).to_degrees())
+            both.then(|| {
+                normal
+                    .cross(truth)
+                    .length()
+                    .atan2(normal.dot(truth))
+                    .to_degrees()
+            })
         };
         Found {
             distance,
@@ -178,7 +189,10 @@ impl Found {
             ("position", three(self.position)),
             ("normal", three(self.normal)),
             ("error", or_none(self.error, &|e| format!("{e:.2e}"))),
-            ("normal error", or_none(self.angle, &|a| format!("{a:.2e}°"))),
+            (
+                "normal error",
+                or_none(self.angle, &|a| format!("{a:.2e}°")),
+            ),
         ]
     }
 }

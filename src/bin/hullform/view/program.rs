@@ -219,7 +219,12 @@ impl Program {
 
     fn take_mesh(&mut self, number: u64, result: Result<ControlMesh>) {
         self.running.read.retain(|other| *other != number);
-        let Some(part) = self.viewer.parts.iter_mut().find(|part| part.number() == number) else {
+        let Some(part) = self
+            .viewer
+            .parts
+            .iter_mut()
+            .find(|part| part.number() == number)
+        else {
             return;
         };
         match result {
@@ -228,7 +233,11 @@ impl Program {
                 if self.viewer.selection.part() == Some(number) {
                     self.viewer.selection.clear();
                 }
-                let unread = self.viewer.parts.iter().any(|part| part.history().is_none());
+                let unread = self
+                    .viewer
+                    .parts
+                    .iter()
+                    .any(|part| part.history().is_none());
                 if self.viewer.fit_pending && !unread {
                     self.viewer.fit();
                 }
@@ -256,7 +265,9 @@ impl Program {
                     self.viewer.notices.warn(refusal.clone());
                 }
                 self.stage.parts.retain(|staged| staged.number != number);
-                self.stage.parts.push(Staged::new(number, model, wanted, sides));
+                self.stage
+                    .parts
+                    .push(Staged::new(number, model, wanted, sides));
                 self.stage.parts.sort_by_key(|staged| staged.number);
                 self.fresh = true;
                 Ok(())
@@ -430,9 +441,13 @@ impl Program {
         for side in &sides {
             let (vertices, triangles) = &mut overlay.maps[side.recipe];
             for staged in &self.stage.parts {
-                let Some(measured) = self.measured(staged, side.recipe) else { continue };
+                let Some(measured) = self.measured(staged, side.recipe) else {
+                    continue;
+                };
                 let view = eye.view(measured.model.placement(), side.viewport.aspect(), all);
-                let Some(map) = measured.map(legend.kind, legend.scale, &view) else { continue };
+                let Some(map) = measured.map(legend.kind, legend.scale, &view) else {
+                    continue;
+                };
                 let first = vertices.len() as u32;
                 vertices.extend(map);
                 let own = measured.surface.triangles.iter();
@@ -467,7 +482,9 @@ impl Program {
                 Wish::Quit => return Ok(true),
                 Wish::Screenshot => {
                     if !self.canvas.shoot()? {
-                        self.viewer.notices.warn("the display does not give its pictures back");
+                        self.viewer
+                            .notices
+                            .warn("the display does not give its pictures back");
                     }
                 }
                 Wish::Render => self.render()?,
@@ -477,7 +494,6 @@ impl Program {
         }
         Ok(false)
     }
-
 }
 
 /// The side at a place of the picture (-1..1, y up), and the place in that side's own view.

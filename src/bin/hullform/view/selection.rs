@@ -190,7 +190,10 @@ fn depth_at(corners: &[(DVec2, f64)], at: DVec2) -> Option<f64> {
     let depths = rest.windows(2).filter_map(|pair| {
         let [(a, da), (b, db), (c, dc)] = [first, pair[0], pair[1]];
         let area = (b - a).perp_dot(c - a);
-        let [u, v] = [(at - a).perp_dot(c - a) / area, (b - a).perp_dot(at - a) / area];
+        let [u, v] = [
+            (at - a).perp_dot(c - a) / area,
+            (b - a).perp_dot(at - a) / area,
+        ];
         let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
         inside.then_some(da + u * (db - da) + v * (dc - da))
     });

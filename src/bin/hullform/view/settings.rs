@@ -1,15 +1,12 @@
-//! What the window remembers from one time to the next: one file of settings, and one of what pipelines are made of. Nothing else is written unasked.
+//! What the window remembers from one time to the next: one file of settings. Nothing else is written unasked.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::context::replace;
 use super::viewer::Viewer;
+use crate::{output, places};
 
-/// The variables that name the folders, and where these are in a home without them (XDG Base Directory Specification 0.8).
-const CONFIG: [&str; 2] = ["XDG_CONFIG_HOME", ".config"];
-const CACHE: [&str; 2] = ["XDG_CACHE_HOME", ".cache"];
 /// Beyond this no window is made again.
 const MOST: u64 = 16384;
 
@@ -28,22 +25,7 @@ pub struct Settings {
 
 /// The file of settings; None where there is no home.
 pub fn file() -> Option<PathBuf> {
-    Some(folder(CONFIG)?.join("view.json"))
-}
-
-/// The file of what pipelines are made of.
-pub fn pipelines() -> Option<PathBuf> {
-    Some(folder(CACHE)?.join("pipelines"))
-}
-
-/// Our folder in one of those that a variable names, or which is in the home. A relative one does not count, as the specification says.
-fn folder([variable, usual]: [&str; 2]) -> Option<PathBuf> {
-    let absolute = |name: &str| {
-        let path = std::env::var_os(name).map(PathBuf::from);
-        path.filter(|path| path.is_absolute())
-    };
-    let base = absolute(variable).or_else(|| Some(absolute("HOME")?.join(usual)))?;
-    Some(base.join("hullform"))
+    Some(places::settings()?.join("view.json"))
 }
 
 impl Settings {
@@ -60,7 +42,9 @@ impl Settings {
             (1..=MOST).contains(&side).then_some(side as u32)
         };
         let recent = value["recent"].as_array().map_or(&[][..], Vec::as_slice);
-        let recent = recent.iter().filter_map(|path| path.as_str().map(PathBuf::from));
+        let recent = recent
+            .iter()
+            .filter_map(|path| path.as_str().map(PathBuf::from));
         Settings {
             size: side(0).zip(side(1)).map(|(width, height)| [width, height]),
             recent: recent.take(12).collect(),
@@ -81,7 +65,7 @@ impl Settings {
 
     /// Writes the file.
     pub fn write(&self, file: &Path) -> std::io::Result<()> {
-        replace(file, format!("{:#}\n", self.value()).as_bytes())
+        output::replace(file, format!("{:#}\n", self.value()).as_bytes())
     }
 
     fn value(&self) -> Value {
@@ -117,7 +101,12 @@ mod tests {
         let file = folder.path().join("new").join("view.json");
         settings.write(&file).expect("it is written");
         assert_eq!(Settings::read(&file), settings);
-        for text in ["", "[1, 2", "{\"size\": [0, 99999999], \"recent\": 3}", "null"] {
+        for text in [
+            "",
+            "[1, 2",
+            "{\"size\": [0, 99999999], \"recent\": 3}",
+            "null",
+        ] {
             std::fs::write(&file, text).expect("it is written");
             assert_eq!(Settings::read(&file), Settings::default(), "{text}");
         }

@@ -65,7 +65,10 @@ impl Shot {
         };
         let shown = Layout::PRESENT_SRC_KHR;
         let source = Layout::TRANSFER_SRC_OPTIMAL;
-        let first = barrier([shown, source], [Access::COLOR_ATTACHMENT_WRITE, Access::TRANSFER_READ]);
+        let first = barrier(
+            [shown, source],
+            [Access::COLOR_ATTACHMENT_WRITE, Access::TRANSFER_READ],
+        );
         let last = barrier([source, shown], [Access::empty(), Access::empty()]);
         let layers = vk::ImageSubresourceLayers::default()
             .aspect_mask(vk::ImageAspectFlags::COLOR)

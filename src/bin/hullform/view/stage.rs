@@ -168,12 +168,7 @@ impl Stage {
     ///
     /// # Errors
     /// What the library refuses, of a part whose number comes along.
-    pub fn decide(
-        &mut self,
-        viewer: &Viewer,
-        overlay: &Overlay,
-        context: &Context,
-    ) -> Result<()> {
+    pub fn decide(&mut self, viewer: &Viewer, overlay: &Overlay, context: &Context) -> Result<()> {
         for staged in &mut self.parts {
             let number = staged.number;
             let Some(part) = viewer.parts.iter().find(|part| part.number() == number) else {

@@ -241,7 +241,9 @@ impl Viewer {
 
     /// Places of all control vertices, as they are shown.
     pub fn points(&self) -> impl Iterator<Item = DVec3> + Clone + '_ {
-        self.parts.iter().flat_map(|part| part.points().iter().copied())
+        self.parts
+            .iter()
+            .flat_map(|part| part.points().iter().copied())
     }
 
     /// A sphere around all that is shown, bumps included.
@@ -277,7 +279,10 @@ impl Viewer {
     /// The part that edits go to: the one with the selection, else the first.
     pub fn edited(&mut self) -> Option<&mut Part> {
         let number = self.selection.part();
-        let at = self.parts.iter().position(|part| Some(part.number()) == number);
+        let at = self
+            .parts
+            .iter()
+            .position(|part| Some(part.number()) == number);
         self.parts.get_mut(at.unwrap_or(0))
     }
 }

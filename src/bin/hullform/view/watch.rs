@@ -38,9 +38,12 @@ impl Watch {
 
     /// Watches the folders of these files as well.
     pub fn look_after<'f>(&mut self, files: impl Iterator<Item = &'f Path>) {
-        let Some(watcher) = &mut self.watcher else { return };
+        let Some(watcher) = &mut self.watcher else {
+            return;
+        };
         for file in files {
-            let Some(folder) = place(file).and_then(|file| Some(file.parent()?.to_path_buf())) else {
+            let Some(folder) = place(file).and_then(|file| Some(file.parent()?.to_path_buf()))
+            else {
                 continue;
             };
             if !self.folders.contains(&folder)
@@ -60,7 +63,9 @@ impl Watch {
 
 /// Where a file is, by the real name of its folder: the file itself may be away for a moment.
 pub fn place(file: &Path) -> Option<PathBuf> {
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = file
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     Some(folder.canonicalize().ok()?.join(file.file_name()?))
 }

@@ -50,7 +50,9 @@ impl<T: Send + 'static> Workers<T> {
             wake();
         });
         let thread = started.map_err(|error| {
-            Error::Refused(format!("no thread could be started ({error}); close other programs"))
+            Error::Refused(format!(
+                "no thread could be started ({error}); close other programs"
+            ))
         })?;
         self.running.retain(|thread| !thread.is_finished());
         self.running.push(thread);
@@ -84,11 +86,19 @@ mod tests {
     fn work_that_breaks_down_is_told_like_any_failure() {
         let mut workers = Workers::<Result<u32>>::new(Arc::new(|| {}));
         let broken = || -> Result<u32> { panic!("this panic is meant to be seen by a test") };
-        workers.start("fails", broken, |result| result).expect("a thread");
-        workers.start("works", || Ok(5), |result| result).expect("a thread");
+        workers
+            .start("fails", broken, |result| result)
+            .expect("a thread");
+        workers
+            .start("works", || Ok(5), |result| result)
+            .expect("a thread");
         assert!(workers.finish(Duration::from_secs(20)));
         let done = workers.done();
-        let good: Vec<u32> = done.iter().filter_map(|r| r.as_ref().ok()).copied().collect();
+        let good: Vec<u32> = done
+            .iter()
+            .filter_map(|r| r.as_ref().ok())
+            .copied()
+            .collect();
         assert_eq!((done.len(), good), (2, vec![5]));
     }
 }

@@ -20,7 +20,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
     });
     sharpness(ui, viewer);
     ui.horizontal_wrapped(|ui| {
-        let steps = viewer.edited().and_then(|part| part.history()).map(|history| history.steps());
+        let steps = viewer
+            .edited()
+            .and_then(|part| part.history())
+            .map(|history| history.steps());
         let [back, ahead] = steps.unwrap_or_default();
         let buttons = [
             ("undo", Command::Undo, back > 0),
@@ -29,7 +32,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
             ("save", Command::Save, !viewer.parts.is_empty()),
         ];
         for (words, command, enabled) in buttons {
-            if ui.add_enabled(enabled, egui::Button::new(words).small()).clicked() {
+            if ui
+                .add_enabled(enabled, egui::Button::new(words).small())
+                .clicked()
+            {
                 viewer.obey(command);
             }
         }
@@ -61,7 +67,9 @@ fn motion(ui: &mut Ui, deform: &mut Deform) {
     let all = Kind::ALL.map(|kind| (kind, kind.name().to_string()));
     choice(ui, "kind", &mut deform.kind, &all);
     ui.add_enabled_ui(deform.kind != Kind::None, |ui| {
-        row(ui, "amount", |ui| ui.add(Slider::new(&mut deform.amount, 0.0..=1.0)));
+        row(ui, "amount", |ui| {
+            ui.add(Slider::new(&mut deform.amount, 0.0..=1.0))
+        });
         row(ui, "time", |ui| {
             let slider = Slider::new(&mut deform.time, 0.0..=Deform::TURN);
             ui.add(slider.fixed_decimals(2).suffix(" s"));

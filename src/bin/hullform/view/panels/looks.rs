@@ -13,7 +13,10 @@ use super::{choice, heading, row};
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
     heading(ui, "look");
     camera(ui, viewer);
-    let all: Vec<_> = SHADINGS.iter().map(|&(s, words)| (s, words.to_string())).collect();
+    let all: Vec<_> = SHADINGS
+        .iter()
+        .map(|&(s, words)| (s, words.to_string()))
+        .collect();
     choice(ui, "colours", &mut viewer.look.shading, &all);
     row(ui, "bumps", |ui| {
         let slider = Slider::new(&mut viewer.look.displace, -0.1..=0.1);
@@ -87,7 +90,8 @@ fn cut(ui: &mut Ui, viewer: &mut Viewer) {
     choice(ui, "culling", &mut cutting.cull, &all);
     let mut frozen = viewer.frozen.is_some();
     ui.horizontal_wrapped(|ui| {
-        ui.toggle_value(&mut frozen, "freeze").on_hover_text("cut by this camera, look with another");
+        ui.toggle_value(&mut frozen, "freeze")
+            .on_hover_text("cut by this camera, look with another");
         ui.toggle_value(&mut viewer.cutting.amplify, "amplify cracks");
     });
     if frozen != viewer.frozen.is_some() {

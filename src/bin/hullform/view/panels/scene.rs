@@ -55,7 +55,10 @@ fn line(ui: &mut Ui, viewer: &mut Viewer, rect: Rect) -> bool {
             let grip = Rect::from_x_y_ranges(x - NEAR..=x + NEAR, rect.y_range());
             viewer.places.insert("split", grip);
             let response = ui.interact(grip, ui.id().with("split"), Sense::drag());
-            if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+            if let Some(at) = response
+                .interact_pointer_pos()
+                .filter(|_| response.dragged())
+            {
                 let share = (at.x - rect.left()) / rect.width().max(1.0);
                 viewer.compare.at = f64::from(share).clamp(0.0, 1.0);
             }
@@ -65,7 +68,8 @@ fn line(ui: &mut Ui, viewer: &mut Viewer, rect: Rect) -> bool {
             }
             let stroke = Stroke::new(if held { 2.5 } else { 1.5 }, colour);
             ui.painter().line_segment(whole(x), stroke);
-            ui.painter().circle_filled(Pos2::new(x, rect.center().y), 5.0, Color32::WHITE);
+            ui.painter()
+                .circle_filled(Pos2::new(x, rect.center().y), 5.0, Color32::WHITE);
             held
         }
     }
@@ -73,13 +77,17 @@ fn line(ui: &mut Ui, viewer: &mut Viewer, rect: Rect) -> bool {
 
 fn mouse(ui: &mut Ui, viewer: &mut Viewer, rect: Rect, response: &Response) {
     let (modifiers, scroll, pinch) = ui.input(|input| {
-        (input.modifiers, input.smooth_scroll_delta, input.zoom_delta())
+        (
+            input.modifiers,
+            input.smooth_scroll_delta,
+            input.zoom_delta(),
+        )
     });
     let by = response.drag_delta();
     let by = DVec2::new(f64::from(by.x), f64::from(by.y));
     let left = response.dragged_by(PointerButton::Primary);
-    let other = response.dragged_by(PointerButton::Secondary)
-        || response.dragged_by(PointerButton::Middle);
+    let other =
+        response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
     if left && modifiers.command && !viewer.selection.vertices.is_empty() {
         move_picked(viewer, rect, by);
     } else if other || left && modifiers.shift {
@@ -92,12 +100,16 @@ fn mouse(ui: &mut Ui, viewer: &mut Viewer, rect: Rect, response: &Response) {
             part.drop_it();
         }
     }
-    let Some(at) = response.hover_pos() else { return };
+    let Some(at) = response.hover_pos() else {
+        return;
+    };
     let place = place(rect, at);
     let factor = f64::from(pinch) * (f64::from(scroll.y) * 0.0035).exp();
     if factor != 1.0 && factor.is_finite() && factor > 0.0 {
         let (aspect, radius) = (viewer.area.aspect(), viewer.sphere().radius);
-        viewer.orbit.dolly(factor.clamp(0.2, 5.0), place, aspect, radius);
+        viewer
+            .orbit
+            .dolly(factor.clamp(0.2, 5.0), place, aspect, radius);
     }
     if response.double_clicked() && viewer.selection.tool == Tool::Look {
         viewer.obey(Command::Fit);
@@ -119,7 +131,10 @@ fn place(rect: Rect, at: Pos2) -> DVec2 {
 /// What sees the cage in the picture.
 fn sight(viewer: &Viewer, rect: Rect) -> Sight {
     Sight {
-        clip: viewer.orbit.eye().clip_from_world(viewer.area.aspect(), viewer.sphere()),
+        clip: viewer
+            .orbit
+            .eye()
+            .clip_from_world(viewer.area.aspect(), viewer.sphere()),
         size: DVec2::new(f64::from(rect.width()), f64::from(rect.height())),
     }
 }
@@ -151,7 +166,9 @@ fn move_picked(viewer: &mut Viewer, rect: Rect, by: DVec2) {
     let back = sight.clip.inverse();
     let vertices = viewer.selection.vertices.clone();
     let Some(part) = viewer.edited() else { return };
-    let Some(history) = part.history() else { return };
+    let Some(history) = part.history() else {
+        return;
+    };
     let positions = &history.draft().positions;
     let moved = |vertex: &u32| {
         let was = *positions.get(*vertex as usize)?;
@@ -201,7 +218,9 @@ fn numbers(ui: &Ui, viewer: &Viewer, rect: Rect) {
     let sight = sight(viewer, rect);
     let mut left = MOST_NUMBERS;
     let mut write = |point, words: String, vertex: bool| {
-        let Some((at, _)) = sight.place(point) else { return };
+        let Some((at, _)) = sight.place(point) else {
+            return;
+        };
         let at = rect.min + egui::vec2(at.x as f32, at.y as f32);
         if left == 0 || !rect.contains(at) {
             return;
@@ -243,11 +262,33 @@ fn scale(ui: &Ui, legend: &Legend, rect: Rect) {
         let [r, g, b] = crate::compare::scale::colour(f64::from(share));
         let byte = |c: f64| (255.0 * c).round() as u8;
         let x = left + width * step as f32 / steps as f32;
-        let bar = Rect::from_min_size(Pos2::new(x, top), egui::vec2(width / steps as f32 + 0.5, 12.0));
-        ui.painter().rect_filled(bar, 0.0, Color32::from_rgb(byte(r), byte(g), byte(b)));
+        let bar = Rect::from_min_size(
+            Pos2::new(x, top),
+            egui::vec2(width / steps as f32 + 0.5, 12.0),
+        );
+        ui.painter()
+            .rect_filled(bar, 0.0, Color32::from_rgb(byte(r), byte(g), byte(b)));
     }
     let (low, high) = legend.ends();
-    label(ui, Pos2::new(left, top + 14.0), egui::Align2::LEFT_TOP, &low, 12.0);
-    label(ui, Pos2::new(left + width, top + 14.0), egui::Align2::RIGHT_TOP, &high, 12.0);
-    label(ui, Pos2::new(left, top - 4.0), egui::Align2::LEFT_BOTTOM, &legend.title(), 12.0);
+    label(
+        ui,
+        Pos2::new(left, top + 14.0),
+        egui::Align2::LEFT_TOP,
+        &low,
+        12.0,
+    );
+    label(
+        ui,
+        Pos2::new(left + width, top + 14.0),
+        egui::Align2::RIGHT_TOP,
+        &high,
+        12.0,
+    );
+    label(
+        ui,
+        Pos2::new(left, top - 4.0),
+        egui::Align2::LEFT_BOTTOM,
+        &legend.title(),
+        12.0,
+    );
 }

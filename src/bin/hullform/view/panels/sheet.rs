@@ -24,7 +24,9 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
         .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
     window.show(ctx, |ui| {
         let mouse = MOUSE.iter().map(|&(how, what)| (how.to_string(), what));
-        let keys = KEYS.iter().map(|binding| (key_words(binding), binding.words));
+        let keys = KEYS
+            .iter()
+            .map(|binding| (key_words(binding), binding.words));
         let all: Vec<_> = mouse.chain(keys).collect();
         let rows = all.len().div_ceil(3);
         ui.horizontal_top(|ui| {
@@ -32,7 +34,11 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
                 let grid = egui::Grid::new(("keys", number)).spacing([14.0, 3.0]);
                 grid.show(ui, |ui| {
                     for (key, words) in column {
-                        ui.label(RichText::new(key).monospace().color(Color32::from_rgb(230, 160, 110)));
+                        ui.label(
+                            RichText::new(key)
+                                .monospace()
+                                .color(Color32::from_rgb(230, 160, 110)),
+                        );
                         ui.label(*words);
                         ui.end_row();
                     }

@@ -48,7 +48,10 @@ impl Program {
         };
         match self.clipboard.copy(&line) {
             Ok(()) => self.viewer.notices.tell(format!("copied{without}: {line}")),
-            Err(words) => self.viewer.notices.tell(format!("{words}{without}: {line}")),
+            Err(words) => self
+                .viewer
+                .notices
+                .tell(format!("{words}{without}: {line}")),
         }
         self.copied = Some(line);
     }
@@ -61,7 +64,10 @@ impl Program {
         let Some(draft) = part.history().map(|history| history.draft().clone()) else {
             return Ok(());
         };
-        let stem = part.file().and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
+        let stem = part
+            .file()
+            .and_then(Path::file_stem)
+            .map(|stem| stem.to_string_lossy());
         let stem = format!("{}-edited", stem.unwrap_or("hullform".into()));
         // Names tell schemes: one that says another would be read as that.
         let prefix = match draft.scheme() {

@@ -17,7 +17,9 @@ impl Program {
     /// Starts what is needed and not under way.
     pub fn start(&mut self) -> Result<()> {
         let numbers: Vec<u64> = self.viewer.parts.iter().map(Part::number).collect();
-        self.stage.parts.retain(|staged| numbers.contains(&staged.number));
+        self.stage
+            .parts
+            .retain(|staged| numbers.contains(&staged.number));
         self.deform();
         for place in 0..self.viewer.parts.len() {
             self.read(place)?;
@@ -31,7 +33,9 @@ impl Program {
     fn deform(&mut self) {
         let deform = self.viewer.deform;
         for part in &mut self.viewer.parts {
-            let Some(history) = part.history() else { continue };
+            let Some(history) = part.history() else {
+                continue;
+            };
             let positions = history.draft().positions.clone();
             let all = crate::eye::Sphere::around(positions.iter().copied());
             part.show(deform.points(&positions, all));
@@ -49,7 +53,8 @@ impl Program {
         let path = part.path().map(std::path::Path::to_path_buf);
         let shape = self.shape.clone();
         let work = move || model::load(path.as_deref(), &shape);
-        self.workers.start("read", work, move |result| Done::Read(number, result))
+        self.workers
+            .start("read", work, move |result| Done::Read(number, result))
     }
 
     fn build(&mut self, place: usize) -> Result<()> {
@@ -70,7 +75,9 @@ impl Program {
         self.failed.built.retain(|(other, _)| *other != number);
         let (_, wanted) = key.clone();
         self.running.built.push(key);
-        let Some(history) = part.history() else { return Ok(()) };
+        let Some(history) = part.history() else {
+            return Ok(());
+        };
         let (draft, context) = (history.draft().clone(), self.context.clone());
         let (how, styles) = (self.shape.triangulate, self.styles());
         let asked = wanted.clone();
@@ -79,8 +86,15 @@ impl Program {
             let scheme = asked.scheme.unwrap_or(mesh.options().scheme);
             let model = Model::new(under_scheme(mesh, scheme, how)?);
             let place = |&recipe| context.place(&model, recipe);
-            let sides = asked.recipes.iter().map(place).collect::<Result<Vec<Drawn>>>()?;
-            for (drawn, style) in sides.iter().flat_map(|d| styles.iter().map(move |s| (d, s))) {
+            let sides = asked
+                .recipes
+                .iter()
+                .map(place)
+                .collect::<Result<Vec<Drawn>>>()?;
+            for (drawn, style) in sides
+                .iter()
+                .flat_map(|d| styles.iter().map(move |s| (d, s)))
+            {
                 let style = Style {
                     backend: drawn.surface.options().backend,
                     residence: drawn.surface.options().residence,
@@ -122,7 +136,11 @@ impl Program {
 
     /// What a measurement of a part's side would be of.
     pub(super) fn subject(&self, staged: &Staged, side: usize) -> Option<Subject> {
-        let part = self.viewer.parts.iter().find(|part| part.number() == staged.number)?;
+        let part = self
+            .viewer
+            .parts
+            .iter()
+            .find(|part| part.number() == staged.number)?;
         Some(Subject {
             part: staged.number,
             version: staged.wanted.version,
@@ -137,7 +155,9 @@ impl Program {
     /// The measurement of a part's side, if it is there.
     pub(super) fn measured(&self, staged: &Staged, side: usize) -> Option<&Arc<Measured>> {
         let subject = self.subject(staged, side)?;
-        self.kept.iter().find(|measured| measured.subject == subject)
+        self.kept
+            .iter()
+            .find(|measured| measured.subject == subject)
     }
 
     /// Captures what a map or the cursor asks for, one after the other, when nothing moves.
@@ -147,11 +167,21 @@ impl Program {
             return Ok(());
         }
         let recipes = self.viewer.recipes().len();
-        let sides = self.stage.parts.iter().flat_map(|part| (0..recipes).map(move |i| (part, i)));
+        let sides = self
+            .stage
+            .parts
+            .iter()
+            .flat_map(|part| (0..recipes).map(move |i| (part, i)));
         let wanted: Vec<(&Staged, usize)> = sides.collect();
         for (staged, side) in wanted {
-            let Some(subject) = self.subject(staged, side) else { continue };
-            match self.kept.iter().find(|measured| measured.subject == subject) {
+            let Some(subject) = self.subject(staged, side) else {
+                continue;
+            };
+            match self
+                .kept
+                .iter()
+                .find(|measured| measured.subject == subject)
+            {
                 Some(measured) => {
                     let mapped = self.viewer.compare.map.is_some();
                     let free = self.running.compared.is_none();
@@ -181,7 +211,11 @@ impl Program {
         let mut draft = history.draft().clone();
         draft.positions = Arc::new(part.points().to_vec());
         self.running.measured = Some(subject.clone());
-        let (context, how, asked) = (self.context.clone(), self.shape.triangulate, subject.clone());
+        let (context, how, asked) = (
+            self.context.clone(),
+            self.shape.triangulate,
+            subject.clone(),
+        );
         let work = move || errors::measure(&context, &draft, how, asked).map(Arc::new);
         let told = move |result| Done::Measured(Box::new(subject), result);
         self.workers.start("measure", work, told)

@@ -25,7 +25,13 @@ impl Program {
         let asked = self.context.global.validation;
         self.readings.validation = asked.then_some(messages);
         let info = self.context.device().info();
-        let names: Vec<&str> = self.context.gpu.workarounds.iter().map(|row| row.name).collect();
+        let names: Vec<&str> = self
+            .context
+            .gpu
+            .workarounds
+            .iter()
+            .map(|row| row.name)
+            .collect();
         let workarounds = match names.is_empty() {
             true => "none".to_string(),
             false => names.join(", "),
@@ -33,7 +39,10 @@ impl Program {
         let [width, height] = self.canvas.size();
         self.readings.device_facts = [
             ("name", info.name.clone()),
-            ("driver", format!("{} {}", info.driver.name, info.driver.info)),
+            (
+                "driver",
+                format!("{} {}", info.driver.name, info.driver.info),
+            ),
             ("workarounds", workarounds),
             ("window", format!("{width} x {height}")),
             ("presents", format!("{:?}", self.canvas.mode())),
@@ -58,7 +67,10 @@ impl Program {
     pub fn state(&self) -> Value {
         let viewer = &self.viewer;
         let rect = |rect: &egui::Rect| [rect.left(), rect.top(), rect.width(), rect.height()];
-        let places = viewer.places.iter().map(|(name, place)| (name.to_string(), json!(rect(place))));
+        let places = viewer
+            .places
+            .iter()
+            .map(|(name, place)| (name.to_string(), json!(rect(place))));
         let places: serde_json::Map<String, Value> = places.collect();
         let (orbit, area) = (viewer.orbit, viewer.area);
         let memory: u64 = self.readings.memory.iter().map(|(_, size)| size).sum();
@@ -118,7 +130,9 @@ impl Program {
 
     fn look(&self) -> Value {
         let look = self.viewer.look;
-        let name = SHADINGS.iter().find(|(shading, _)| *shading == look.shading);
+        let name = SHADINGS
+            .iter()
+            .find(|(shading, _)| *shading == look.shading);
         json!({
             "shading": name.map(|(_, name)| name),
             "wireframe": look.wireframe,
@@ -145,10 +159,16 @@ impl Program {
 
     fn models(&self) -> Vec<Value> {
         let model = |part: &Part| {
-            let staged = self.stage.parts.iter().find(|staged| staged.number == part.number());
+            let staged = self
+                .stage
+                .parts
+                .iter()
+                .find(|staged| staged.number == part.number());
             let methods = staged.map(|staged| {
                 let sides = staged.sides.iter();
-                sides.map(|drawn| drawn.surface.prepared().method).collect::<Vec<_>>()
+                sides
+                    .map(|drawn| drawn.surface.prepared().method)
+                    .collect::<Vec<_>>()
             });
             let history = part.history();
             json!({
@@ -190,10 +210,16 @@ fn facts(part: &Part, staged: Option<&Staged>) -> Vec<Fact> {
         let [prepare, upload] = drawn.seconds.map(|seconds| 1e3 * seconds);
         facts.push(("prepare, upload", format!("{prepare:.0} + {upload:.0} ms")));
     }
-    facts.into_iter().map(|(name, value)| (name.to_string(), value)).collect()
+    facts
+        .into_iter()
+        .map(|(name, value)| (name.to_string(), value))
+        .collect()
 }
 
 fn patches(prepared: &Prepared) -> String {
-    let counts = prepared.passes.iter().map(|pass| grouped(pass.patches.len() as u64));
+    let counts = prepared
+        .passes
+        .iter()
+        .map(|pass| grouped(pass.patches.len() as u64));
     counts.collect::<Vec<String>>().join(" + ")
 }

@@ -86,8 +86,10 @@ const uint USE_SPARE = 128u;
 const uint USE_CUSP = 256u;
 // Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
 const uint USE_INSIDE = 512u;
+// Use flag of the inside: the patch is the mirror image of what its plan is for, with u and v exchanged.
+const uint USE_MIRRORED = 1024u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-const uint USE_SIDE_SHIFT = 10u;
+const uint USE_SIDE_SHIFT = 11u;
 // Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
 const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.

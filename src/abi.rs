@@ -201,8 +201,10 @@ constants! {
     USE_CUSP = 256;
     /// Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
     USE_INSIDE = 512;
+    /// Use flag of the inside: the patch is the mirror image of what its plan is for, with u and v exchanged.
+    USE_MIRRORED = 1024;
     /// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-    USE_SIDE_SHIFT = 10;
+    USE_SIDE_SHIFT = 11;
     /// Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
     PATCH_TURNED_CORNER = 128;
 

@@ -38,6 +38,15 @@ vec3 control_point(Patch record, uint number) {
 }
 #endif
 
+// Whether the patch is the mirror image of what its inside's plan is for, with u and v exchanged.
+bool is_mirrored(Patch record) { return (borders[border_of(record)].flags[0] & USE_MIRRORED) != 0u; }
+
+// The use of the corner that a plan of the inside means by a STENCIL_CORNER.
+uint use_of_corner(Patch record, uint corner) {
+    uint plain = min(corner, USES - 1u);
+    return is_mirrored(record) ? STENCIL_CORNER + (3u & (4u + STENCIL_CORNER - plain)) : plain;
+}
+
 #if defined(STAGE_COMPUTE) || (defined(STAGE_CONTROL) && !defined(CACHED_POINTS))
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
@@ -104,7 +113,7 @@ vec3 stencil_point(Patch record, Ring ring, uint number) {
     uint row = stencil_row(ring, number);
     uint corner = floatBitsToUint(weights[row]);
     uint place = ring.inside ? 0u : control_at(ring.places);
-    if (ring.inside && corner != STENCIL_OWN) place = control_at(borders[border_of(record)].rings[min(corner, USES - 1u)]);
+    if (ring.inside && corner != STENCIL_OWN) place = control_at(borders[border_of(record)].rings[use_of_corner(record, corner)]);
     vec3 origin = ring_point(record, place);
     uint weight = row + 1u;
     precise vec3 sum = vec3(0.0);
@@ -171,6 +180,8 @@ vec3 vertex_normal(Patch record, uint number) {
         ring.size = wanted ? ring.size : 0u;
         Tangents tangents = ring_tangents(record, ring, i == 0u ? limit_pair : has_near ? near_pair : limit_pair + 2u);
         normal = clear_normal(tangents);
+        // The plan's tangents go the other way round there.
+        if (i == 1u && has_near && is_mirrored(record)) normal = -normal;
         if (i == 0u) {
             limit = tangents;
             limit_normal = normal;
@@ -296,7 +307,8 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
         precise vec3 vertex = point_at(first) + use_origin(slot, place.number);
         return Point(vertex, point_at(first + 1u));
     }
-    vec2 local = place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
+    bool exchanged = place.number == 0u && is_mirrored(record);
+    vec2 local = exchanged ? uv.yx : place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
     Leaf leaf = find_leaf(borders[border_of(record)].roots[place.number], local);
     Basis u, v;
     creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
@@ -304,11 +316,11 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint row = leaf.points + 16u * (flags >> USE_SIDE_SHIFT);
     Surface surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + 4u, u),
                               scratch_row(first, row + 8u, u), scratch_row(first, row + 12u, u));
-    surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
+    surface = exchanged ? Surface(surface.position, surface.dv, surface.du) : turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
     vec3 base = leaf.base > 0u ? point_at(first + max(leaf.base, 1u) - 1u) : vec3(0.0);
-    vec3 origin = leaf.origin == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, leaf.origin > 0u ? min(leaf.origin, USES - 1u) : place.number);
+    vec3 origin = leaf.origin == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, leaf.origin > 0u ? use_of_corner(record, leaf.origin) : place.number);
     precise vec3 position = (surface.position + base) + origin;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;
@@ -318,8 +330,9 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 
 #ifdef STAGE_FRAGMENT
 Cell cell_at(Patch record, vec2 uv) {
-    Leaf leaf = find_leaf(borders[border_of(record)].roots[0], uv);
-    return Cell(leaf.kind, leaf.uv, leaf.scale);
+    bool mirrored = is_mirrored(record);
+    Leaf leaf = find_leaf(borders[border_of(record)].roots[0], mirrored ? uv.yx : uv);
+    return Cell(leaf.kind, mirrored ? leaf.uv.yx : leaf.uv, leaf.scale);
 }
 #endif
 

@@ -258,7 +258,7 @@ fn surroundings(topology: &Topology, part: Part) -> Surroundings {
     let quad = topology.face(part.face).len() == 4;
     let ring = match quad {
         true => Ring::of_quad(topology, part.face),
-        false => Ring::from_corner(topology, part.face, part.corner),
+        false => Ring::of_part(topology, part.face, part.corner),
     };
     Surroundings::Irregular(part, ring.expect("parts are the topology's own"))
 }

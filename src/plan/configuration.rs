@@ -30,22 +30,67 @@ pub struct Ring {
     pub faces: Vec<u32>,
     /// The corner of the first face at which the walk began: the plan's corner 0.
     pub start: u32,
+    /// Whether the walk went clockwise: the face is the mirror image of what the plan is for, with u and v exchanged.
+    pub mirrored: bool,
+}
+
+/// Where a walk begins, and which way it goes around.
+#[derive(Clone, Copy)]
+struct Start {
+    face: u32,
+    corner: u32,
+    mirrored: bool,
+}
+
+impl Start {
+    /// The `i`th corner of a face of `arity` corners that the walk meets.
+    fn corner(self, i: u32, arity: u32) -> u32 {
+        if self.mirrored {
+            (self.corner + arity - i % arity) % arity
+        } else {
+            (self.corner + i) % arity
+        }
+    }
+
+    /// The edge from that corner to the next.
+    fn edge(self, i: u32, arity: u32) -> u32 {
+        self.corner(i + u32::from(self.mirrored), arity)
+    }
 }
 
 impl Ring {
-    /// The ring of a quad, beginning at the corner whose configuration is the least, so that turned faces find the same plan. None where there is no
-    /// such quad.
+    /// The ring of a quad, beginning at the corner and going the way around whose configuration is the least, so that turned and mirrored faces find the
+    /// same plan. None where there is no such quad.
     pub fn of_quad(topology: &Topology, face: u32) -> Option<Ring> {
-        let corners = (0..4).map(|start| Ring::from_corner(topology, face, start));
-        let corners: Option<Vec<Ring>> = corners.collect();
-        Ring::least(corners?.into_iter()).filter(|_| topology.face(face).len() == 4)
+        if topology.face(face).len() != 4 {
+            return None;
+        }
+        let starts = (0..8).map(|i| Start {
+            face,
+            corner: i % 4,
+            mirrored: i >= 4,
+        });
+        Ring::least(starts.map(|start| Ring::around(topology, start, 4)))
+    }
+
+    /// The ring of the part of a face of any arity at corner `corner`, going the way around whose configuration is the least. The configuration of an n-gon
+    /// stands for its part at that corner. None where there is no such corner.
+    pub fn of_part(topology: &Topology, face: u32, corner: u32) -> Option<Ring> {
+        let arity = topology.face(face).len() as u32;
+        let starts = [false, true].map(|mirrored| Start {
+            face,
+            corner,
+            mirrored,
+        });
+        let starts = starts.into_iter().filter(|_| corner < arity);
+        Ring::least(starts.map(|start| Ring::around(topology, start, arity)))
     }
 
     /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner. None where
     /// there is no such corner.
     pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Option<Ring> {
         let arity = topology.face(face).len() as u32;
-        (start < arity).then(|| Ring::around(topology, face, start, arity))
+        (start < arity).then(|| Ring::unmirrored(topology, face, start, arity))
     }
 
     /// The ring of the edge: the faces around its ends. It begins in one of the faces on the edge, and the edge runs from vertex 0 to
@@ -55,7 +100,7 @@ impl Ring {
             let edges = topology.face_edges(face).iter();
             let start = edges.into_iter().position(|&e| e == edge);
             let start = start.expect("a face on the edge has it") as u32;
-            Ring::around(topology, face, start, 2)
+            Ring::unmirrored(topology, face, start, 2)
         });
         Ring::least(rings)
     }
@@ -63,21 +108,30 @@ impl Ring {
     /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least. None of a vertex that no face has.
     pub fn of_vertex(topology: &Topology, vertex: u32) -> Option<Ring> {
         let corners = topology.vertex_faces(vertex).iter();
-        Ring::least(corners.map(|at| Ring::around(topology, at.face, at.corner, 1)))
+        Ring::least(corners.map(|at| Ring::unmirrored(topology, at.face, at.corner, 1)))
     }
 
     fn least(rings: impl Iterator<Item = Ring>) -> Option<Ring> {
         rings.min_by(|a, b| a.configuration.cmp(&b.configuration))
     }
 
-    /// The faces around so many vertices of a face, beginning with its corner `start`.
-    fn around(topology: &Topology, face: u32, start: u32, corners: u32) -> Ring {
-        let faces = surrounding_faces(topology, face, start, corners);
+    fn unmirrored(topology: &Topology, face: u32, corner: u32, corners: u32) -> Ring {
+        let start = Start {
+            face,
+            corner,
+            mirrored: false,
+        };
+        Ring::around(topology, start, corners)
+    }
+
+    /// The faces around so many vertices of a face.
+    fn around(topology: &Topology, start: Start, corners: u32) -> Ring {
+        let faces = surrounding_faces(topology, start, corners);
         let mut walk = Walk::new(topology, faces.len());
         walk.options(topology.options());
         walk.words.push(faces.len() as u32);
-        for &(face, start) in &faces {
-            walk.face(face, start);
+        for &start in &faces {
+            walk.face(start);
         }
         walk.words.push(corners);
         for corner in 0..corners as usize {
@@ -88,40 +142,35 @@ impl Ring {
         Ring {
             vertices: walk.vertices,
             configuration: Configuration { words: walk.words },
-            faces: faces.iter().map(|&(face, _)| face).collect(),
-            start,
+            faces: faces.iter().map(|start| start.face).collect(),
+            start: start.corner,
+            mirrored: start.mirrored,
         }
     }
 }
 
-/// Every face that has one of so many vertices of `face`, which comes first: around each corner in turn, beginning with `start`, counter-clockwise and then, where a boundary stopped the
-/// walk, clockwise; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
-fn surrounding_faces(
-    topology: &Topology,
-    face: u32,
-    start: u32,
-    corners: u32,
-) -> SmallVec<[(u32, u32); 16]> {
+/// Every face that has one of so many vertices of the first one: around each corner in turn, counter-clockwise and then, where a boundary stopped the
+/// walk, clockwise, or the other way around; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
+fn surrounding_faces(topology: &Topology, start: Start, corners: u32) -> SmallVec<[Start; 16]> {
+    let Start { face, mirrored, .. } = start;
     let arity = topology.face(face).len() as u32;
-    let mut found = SmallVec::from_slice(&[(face, start)]);
+    let mut found = SmallVec::from_slice(&[start]);
     let mut add = |next: u32, vertex: u32| {
-        if found.iter().all(|&(known, _)| known != next) {
-            let corner = topology
-                .face(next)
-                .iter()
-                .position(|&v| v == vertex)
-                .expect("the walk stays at the vertex");
-            found.push((next, corner as u32));
+        if found.iter().all(|known: &Start| known.face != next) {
+            let corner = topology.face(next).iter().position(|&v| v == vertex);
+            found.push(Start {
+                face: next,
+                corner: corner.expect("the walk stays at the vertex") as u32,
+                mirrored,
+            });
         }
     };
-    'corners: for corner in (0..corners).map(|i| (start + i) % arity) {
-        let vertex = topology.face(face)[corner as usize];
+    'corners: for i in 0..corners {
+        let vertex = topology.face(face)[start.corner(i, arity) as usize];
         let edges = topology.face_edges(face);
         let around = topology.vertex_faces(vertex);
-        for edge in [
-            edges[((corner + arity - 1) % arity) as usize],
-            edges[corner as usize],
-        ] {
+        for i in [i + arity - 1, i] {
+            let edge = edges[start.edge(i, arity) as usize];
             let mut met = 1;
             for (next, _) in topology.walk(vertex, face, edge) {
                 add(next, vertex);
@@ -169,21 +218,23 @@ impl Walk<'_> {
         })
     }
 
-    fn face(&mut self, face: u32, start: u32) {
-        let vertices = self.topology.face(face);
-        self.words.push(vertices.len() as u32);
-        for i in 0..vertices.len() {
-            let number = self.number(vertices[(start as usize + i) % vertices.len()]);
+    fn face(&mut self, start: Start) {
+        let vertices = self.topology.face(start.face);
+        let arity = vertices.len() as u32;
+        self.words.push(arity);
+        for i in 0..arity {
+            let number = self.number(vertices[start.corner(i, arity) as usize]);
             self.words.push(number);
         }
     }
 
     /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
-    fn edges(&mut self, faces: &[(u32, u32)], corners: usize) {
+    fn edges(&mut self, faces: &[Start], corners: usize) {
         let mut seen: SmallVec<[u32; 8]> = SmallVec::new();
-        for &(face, start) in faces {
-            let edges = self.topology.face_edges(face);
-            for &number in (0..edges.len()).map(|i| &edges[(start as usize + i) % edges.len()]) {
+        for start in faces {
+            let edges = self.topology.face_edges(start.face);
+            let arity = edges.len() as u32;
+            for &number in (0..arity).map(|i| &edges[start.edge(i, arity) as usize]) {
                 let edge = self.topology.edge(number);
                 if !is_sharp(edge.sharpness) || seen.contains(&number) {
                     continue;

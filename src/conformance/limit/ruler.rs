@@ -1,6 +1,6 @@
 //! What captured vertices are held to: the truth, the CPU's twin, or one of them on a lattice and the other off it.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec2Swizzles, Vec3};
 
 use crate::abi::{self, Captured};
 use crate::conformance::capture::Frame;
@@ -133,7 +133,9 @@ fn kind_of(pass: &Pass, vertex: &Captured) -> Kind {
     let borders: &[abi::Border] = bytemuck::cast_slice(borders);
     let border = &borders[pass.patches[vertex.patch_number as usize].plan as usize];
     // The first use of a border is the inside.
-    let leaf = walk(plans, border.roots[0], Vec2::from(vertex.uv));
+    let uv = Vec2::from(vertex.uv);
+    let mirrored = border.flags[0] & abi::USE_MIRRORED != 0;
+    let leaf = walk(plans, border.roots[0], if mirrored { uv.yx() } else { uv });
     Kind::Node(leaf.expect("borders have the roots of packed trees").kind)
 }
 

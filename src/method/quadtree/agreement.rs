@@ -68,7 +68,7 @@ impl Side<'_> {
 
     /// The stretches in the direction of the mesh's edge.
     fn strip(self) -> Option<Strip> {
-        let strip = self.plan.strips[self.edge as usize].clone()?;
+        let strip = self.patch.strip(self.plan, self.edge)?;
         Some(if self.is_flipped() {
             strip.reversed()
         } else {
@@ -108,7 +108,7 @@ impl Side<'_> {
     /// The vertex that a point is relative to.
     fn origin(self, point: u32) -> Option<u32> {
         let corner = self.plan.stencils[point as usize].corner?;
-        let corner = (self.patch.turn(self.topology) + corner) % 4;
+        let corner = (self.patch.turn(self.topology) + self.patch.corner(corner)) % 4;
         Some(self.topology.face(self.patch.part.face)[corner as usize])
     }
 

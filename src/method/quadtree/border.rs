@@ -133,8 +133,8 @@ struct Builder<'a> {
     /// The plans of the insides.
     plans: &'a [Plan],
     agreed: &'a FxHashSet<u32>,
-    /// Roots of the trees of agreed edges, by plan, edge, and whether it is flipped.
-    strips: FxHashMap<(u32, u32, bool), u32>,
+    /// Roots of the trees of agreed edges, by plan, edge, whether the patch is mirrored, and whether the edge is flipped.
+    strips: FxHashMap<(u32, u32, bool, bool), u32>,
     lines: &'a Shared<Line>,
     vertices: &'a Shared<Point>,
     packed: &'a mut PackedPlans,
@@ -195,7 +195,13 @@ impl Builder<'_> {
         let mut counts = [[0; LEVELS]; USES];
         let [inside @ .., _] = self.plan(&mut border, 0, patch.plan);
         counts[0] = inside;
-        border.nearby = self.packed.nearby[patch.plan as usize];
+        let nearby = self.packed.nearby[patch.plan as usize];
+        border.nearby = [0, 1, 2, 3].map(|corner| nearby[patch.corner(corner) as usize]);
+        border.flags[0] = if patch.ring.mirrored {
+            abi::USE_MIRRORED
+        } else {
+            0
+        };
         let mut places = Vec::new();
         let mut plain = Plain {
             ring,
@@ -208,7 +214,7 @@ impl Builder<'_> {
                 let turn = (edge + 2 * u32::from(flipped)) % 4;
                 let direction = if flipped { abi::USE_FLIPPED } else { 0 };
                 border.flags[number] = abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;
-                border.roots[number] = self.strip(patch.plan, edge, flipped);
+                border.roots[number] = self.strip(patch, edge, flipped);
                 continue;
             }
             match self.lines.known.get(&line) {
@@ -269,21 +275,21 @@ impl Builder<'_> {
     }
 
     /// The root of the tree of an edge that is evaluated with the points of an inside's plan.
-    fn strip(&mut self, number: u32, edge: u32, flipped: bool) -> u32 {
-        let plan = &self.plans[number as usize];
+    fn strip(&mut self, patch: &Irregular, edge: u32, flipped: bool) -> u32 {
+        let plan = &self.plans[patch.plan as usize];
         let packed = &mut *self.packed;
         let push = || {
-            let strip = plan.strips[edge as usize].as_ref();
+            let strip = patch.strip(plan, edge);
             let strip = strip.expect("faces agree on edges along which they have cells");
             if flipped {
                 packed.push_strip(plan, &strip.reversed())
             } else {
-                packed.push_strip(plan, strip)
+                packed.push_strip(plan, &strip)
             }
         };
         *self
             .strips
-            .entry((number, edge, flipped))
+            .entry((patch.plan, edge, patch.ring.mirrored, flipped))
             .or_insert_with(push)
     }
 

@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use crate::abi;
 use crate::method::cached::{CachedPass, CachedPoints};
-use crate::method::quadtree::twin::{Use, plans};
+use crate::method::quadtree::twin::{Use, plans, use_of_corner};
 use crate::method::{Pass, Prepared, Table};
 use crate::tessellation::{Spacing, levels, required_level};
 
@@ -358,7 +358,10 @@ impl<'a> Patch<'a> {
         let (origin, weights) = of.stencil(row);
         let place = match origin {
             abi::STENCIL_OWN => None,
-            corner => Some(self.pass.controls[self.border.rings[corner as usize] as usize]),
+            corner => {
+                let number = use_of_corner(self.border, corner) as usize;
+                Some(self.pass.controls[self.border.rings[number] as usize])
+            }
         };
         each((place.map_or(vertices[0], |place| self.vertex(place)), 0));
         let compensated = vertices.len() > abi::CONTROL_INVOCATIONS as usize;

@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use crate::abi;
-use crate::method::quadtree::twin::{Use, compensated_sum};
+use crate::method::quadtree::twin::{Use, compensated_sum, is_mirrored};
 use crate::method::surface::{Tangents, UNIT, reach};
 
 /// Sums over a ring. Compensated, they err by some units of rounding of the absolute sum; the ring's own positions by one each.
@@ -35,7 +35,12 @@ impl Use<'_> {
     pub(super) fn vertex_normal(&self, vertices: &[Vec3], flags: u32) -> Vec3 {
         let nearby = match self.border.nearby[self.number - 5] {
             abi::NO_TANGENTS => None,
-            number => Some(self.of(0).tangents(vertices, number).normal()),
+            number => {
+                let normal = self.of(0).tangents(vertices, number).normal();
+                // The plan's tangents go the other way round there.
+                let mirrored = is_mirrored(self.border);
+                Some(if mirrored { -normal } else { normal })
+            }
         };
         if flags & abi::USE_CUSP != 0 {
             return nearby.unwrap_or(Vec3::ZERO);

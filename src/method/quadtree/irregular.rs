@@ -2,7 +2,7 @@
 
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
-use crate::plan::Ring;
+use crate::plan::{Plan, Ring, Strip};
 
 /// An irregular patch: its part, its ring, and the number of its plan.
 pub struct Irregular {
@@ -42,6 +42,30 @@ impl Irregular {
         } else {
             0
         }
+    }
+
+    /// The corner of the patch that is corner 0..=3 of its plan, and the other way round: a mirrored plan has u and v exchanged.
+    pub fn corner(&self, corner: u32) -> u32 {
+        if self.ring.mirrored {
+            (4 - corner) % 4
+        } else {
+            corner
+        }
+    }
+
+    /// The edge of the patch that is edge 0..=3 of its plan, and the other way round.
+    pub fn edge(&self, edge: u32) -> u32 {
+        if self.ring.mirrored { 3 - edge } else { edge }
+    }
+
+    /// The cells of its plan along edge 0..=3 of the patch, in the patch's direction.
+    pub fn strip(&self, plan: &Plan, edge: u32) -> Option<Strip> {
+        let strip = plan.strips[self.edge(edge) as usize].as_ref()?;
+        Some(if self.ring.mirrored {
+            strip.mirrored()
+        } else {
+            strip.clone()
+        })
     }
 
     /// Whether edge 0..=3 of a quad's patch runs against the direction of the mesh's edge.

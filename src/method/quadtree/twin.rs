@@ -98,13 +98,30 @@ pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface
     if !turned {
         return bspline(u, v, 1.0, point).point();
     }
-    let Surface { position, du, dv } = bspline(v, u, 1.0, |x, y| point(y, x));
-    let surface = Surface {
+    exchanged(bspline(v, u, 1.0, |x, y| point(y, x))).point()
+}
+
+/// Seen with u and v exchanged.
+fn exchanged(Surface { position, du, dv }: Surface) -> Surface {
+    Surface {
         position,
         du: dv,
         dv: du,
-    };
-    surface.point()
+    }
+}
+
+/// Whether the patch is the mirror image of what its inside's plan is for.
+pub(super) fn is_mirrored(border: &abi::Border) -> bool {
+    border.flags[0] & abi::USE_MIRRORED != 0
+}
+
+/// The use of the corner that a plan of the inside means by a `STENCIL_CORNER`.
+pub(super) fn use_of_corner(border: &abi::Border, corner: u32) -> u32 {
+    if is_mirrored(border) {
+        abi::STENCIL_CORNER + (4 - (corner - abi::STENCIL_CORNER)) % 4
+    } else {
+        corner
+    }
 }
 
 /// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first
@@ -119,7 +136,9 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
         ..
     } = pass.patches[patch];
     let border = &borders[plan as usize];
+    let mirrored = is_mirrored(border);
     let (number, uv) = match place(flags, uv) {
+        Place::Inside if mirrored => (0, Vec2::new(uv.y, uv.x)),
         Place::Inside => (0, uv),
         Place::Edge(edge, t) => (
             1 + edge,
@@ -148,7 +167,11 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
     }
     let (root, side) = (border.roots[number as usize], flags >> abi::USE_SIDE_SHIFT);
     let surface = one_use.evaluate(&given.vertices, root, uv, side);
-    let Surface { position, du, dv } = turned(surface, flags >> abi::USE_TURN_SHIFT & 3);
+    let Surface { position, du, dv } = if number == 0 && mirrored {
+        exchanged(surface)
+    } else {
+        turned(surface, flags >> abi::USE_TURN_SHIFT & 3)
+    };
     // Half of the edge is the whole patch.
     let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
     let scale = if half { 0.5 } else { 1.0 };
@@ -237,7 +260,8 @@ impl<'a> Use<'a> {
     }
 
     /// The vertex of a corner, which points near it are relative to.
-    fn corner(&self, positions: &[Vec3], number: u32) -> Vec3 {
+    fn corner(&self, positions: &[Vec3], corner: u32) -> Vec3 {
+        let number = use_of_corner(self.border, corner);
         let place = self.pass.controls[self.border.rings[number as usize] as usize];
         positions[self.pass.controls[(self.controls + place) as usize] as usize]
     }

@@ -240,7 +240,11 @@ impl Builder<'_> {
         for (corner, point) in (0..).zip(points(topology, patch.part, turn)) {
             let number = 5 + corner as usize;
             // Points near a corner are relative to its vertex; near the middle of an edge, to that of the n-gon's corner.
-            let own = if point.is_some() { corner } else { 0 };
+            let own = if point.is_some() {
+                patch.corner(corner)
+            } else {
+                0
+            };
             border.rings[number] = self.list(vec![own]);
             let Some(point) = point else { continue };
             match self.vertices.known.get(&point) {

@@ -388,6 +388,7 @@ const NAMED: [(&str, &str, &str); 30] = [
     ("src/conformance/robustness.rs", "quadtree", RING),
     ("tests/common/surfaces.rs", "quadtree", PLANS),
     ("tests/plans.rs", "quadtree", PLANS),
+    ("tests/database.rs", "quadtree", PLANS),
     ("tests/gpu/cache.rs", "quadtree", RING),
     ("tests/gpu/lifetimes.rs", "quadtree", RING),
     ("tests/gpu/ring.rs", "quadtree", RING),

@@ -5,6 +5,8 @@
 //! Nothing farther out has a say (see `subdivision::refine`), except that under Chaikin's rule the next sharpness at an edge's far end
 //! does: it is part of what an edge brings along.
 
+use std::cmp::Ordering;
+
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
@@ -65,12 +67,27 @@ impl Ring {
         if topology.face(face).len() != 4 {
             return None;
         }
-        let starts = (0..8).map(|i| Start {
-            face,
-            corner: i % 4,
-            mirrored: i >= 4,
-        });
-        Ring::least(starts.map(|start| Ring::around(topology, start, 4)))
+        let starts = least_starts(topology, face);
+        Ring::smooth(topology, face, starts[0]).or_else(|| {
+            let starts = starts.into_iter();
+            Ring::least(starts.map(|start| Ring::around(topology, start, 4)))
+        })
+    }
+
+    /// The ring of a quad around which all is smooth and quads, and no vertex met twice: its corners' valences tell all, and those of `start` are the least.
+    /// None of others.
+    fn smooth(topology: &Topology, face: u32, start: Start) -> Option<Ring> {
+        let corners = topology.face(face);
+        if !corners.iter().all(|&vertex| is_smooth(topology, vertex)) {
+            return None;
+        }
+        let valences = corners.iter().map(|&v| topology.vertex_faces(v).len());
+        let valences: usize = valences.sum();
+        let ring = Ring::around(topology, start, 4);
+        // Nine faces and sixteen vertices around four corners of four faces; a face and two vertices for each beyond.
+        let is_simple =
+            ring.faces.len() + 7 == valences && ring.vertices.len() + 16 == 2 * valences;
+        is_simple.then_some(ring)
     }
 
     /// The ring of the part of a face of any arity at corner `corner`, going the way around whose configuration is the least. The configuration of an n-gon
@@ -135,17 +152,107 @@ impl Ring {
         }
         walk.words.push(corners);
         for corner in 0..corners as usize {
-            walk.words
-                .push(topology.vertex_sharpness(walk.vertices[corner]).to_bits());
+            walk.words.push(
+                topology
+                    .vertex_sharpness(walk.vertices.all[corner])
+                    .to_bits(),
+            );
         }
         walk.edges(&faces, corners as usize);
         Ring {
-            vertices: walk.vertices,
+            vertices: walk.vertices.all,
             configuration: Configuration { words: walk.words },
             faces: faces.iter().map(|start| start.face).collect(),
             start: start.corner,
             mirrored: start.mirrored,
         }
+    }
+}
+
+/// Whether a word is a sharpness.
+fn is_float(word: u32) -> bool {
+    f32::from_bits(word) >= 0.0
+}
+
+/// Whether nothing is sharp at a vertex, and all its faces are quads. So it is inside and manifold: all else is made sharp.
+fn is_smooth(topology: &Topology, vertex: u32) -> bool {
+    let faces = topology.vertex_faces(vertex).iter();
+    !is_sharp(topology.vertex_sharpness(vertex))
+        && topology.sharp_edges(vertex).next().is_none()
+        && faces
+            .into_iter()
+            .all(|at| topology.face(at.face).len() == 4)
+}
+
+/// The starts in a quad at which what is seen at its corners and edges alone is the least: so few walks must be compared as a whole.
+fn least_starts(topology: &Topology, face: u32) -> SmallVec<[Start; 8]> {
+    let (vertices, edges) = (topology.face(face), topology.face_edges(face));
+    let corners: SmallVec<[[u32; 3]; 4]> = vertices
+        .iter()
+        .map(|&vertex| {
+            let faces = topology.vertex_faces(vertex).len() as u32;
+            let sharp = topology.sharp_edges(vertex).count() as u32;
+            [faces, sharp, topology.vertex_sharpness(vertex).to_bits()]
+        })
+        .collect();
+    let sharpness = |edge: u32| topology.edge(edges[edge as usize]).sharpness.to_bits();
+    let key = |start: Start| {
+        [0, 1, 2, 3].map(|i| {
+            let corner = corners[start.corner(i, 4) as usize];
+            (corner, sharpness(start.edge(i, 4)))
+        })
+    };
+    let mut least: SmallVec<[Start; 8]> = SmallVec::new();
+    for i in 0..8 {
+        let start = Start {
+            face,
+            corner: i % 4,
+            mirrored: i >= 4,
+        };
+        match least.first().map(|&known| key(start).cmp(&key(known))) {
+            Some(Ordering::Greater) => continue,
+            Some(Ordering::Less) => least.clear(),
+            _ => {}
+        }
+        least.push(start);
+    }
+    least
+}
+
+/// Lists up to this length are searched from their beginning; longer ones have a table.
+const SHORT: usize = 32;
+
+/// Numbers, each once, in the order in which they come.
+#[derive(Default)]
+struct Once {
+    all: Vec<u32>,
+    /// Their places, once there are many.
+    places: FxHashMap<u32, u32>,
+}
+
+impl Once {
+    /// The place of a number, if it is there.
+    fn find(&self, number: u32) -> Option<u32> {
+        if self.all.len() <= SHORT {
+            let place = self.all.iter().position(|&known| known == number);
+            return place.map(|place| place as u32);
+        }
+        self.places.get(&number).copied()
+    }
+
+    /// Its place, the next one if it is new; and whether it is.
+    fn place(&mut self, number: u32) -> (u32, bool) {
+        if let Some(place) = self.find(number) {
+            return (place, false);
+        }
+        let place = self.all.len() as u32;
+        self.all.push(number);
+        if self.all.len() == SHORT + 1 {
+            self.places = self.all.iter().copied().zip(0..).collect();
+        } else if self.all.len() > SHORT {
+            self.places.insert(number, place);
+        }
+        (place, true)
     }
 }
 
@@ -155,8 +262,10 @@ fn surrounding_faces(topology: &Topology, start: Start, corners: u32) -> SmallVe
     let Start { face, mirrored, .. } = start;
     let arity = topology.face(face).len() as u32;
     let mut found = SmallVec::from_slice(&[start]);
+    let mut known = Once::default();
+    known.place(face);
     let mut add = |next: u32, vertex: u32| {
-        if found.iter().all(|known: &Start| known.face != next) {
+        if known.place(next).1 {
             let corner = topology.face(next).iter().position(|&v| v == vertex);
             found.push(Start {
                 face: next,
@@ -188,19 +297,19 @@ fn surrounding_faces(topology: &Topology, start: Start, corners: u32) -> SmallVe
 /// Writes down a ring and numbers its vertices on the way.
 struct Walk<'a> {
     topology: &'a Topology,
-    numbers: FxHashMap<u32, u32>,
-    vertices: Vec<u32>,
+    vertices: Once,
     words: Vec<u32>,
 }
 
 impl Walk<'_> {
     /// Nothing yet, with room for what a ring of so many quads takes.
     fn new(topology: &Topology, faces: usize) -> Walk<'_> {
-        let vertices = 2 * faces;
         Walk {
             topology,
-            numbers: FxHashMap::with_capacity_and_hasher(vertices, Default::default()),
-            vertices: Vec::with_capacity(vertices),
+            vertices: Once {
+                all: Vec::with_capacity(2 * faces),
+                ..Once::default()
+            },
             words: Vec::with_capacity(6 + 5 * faces + 5),
         }
     }
@@ -212,10 +321,7 @@ impl Walk<'_> {
     }
 
     fn number(&mut self, vertex: u32) -> u32 {
-        *self.numbers.entry(vertex).or_insert_with(|| {
-            self.vertices.push(vertex);
-            self.vertices.len() as u32 - 1
-        })
+        self.vertices.place(vertex).0
     }
 
     fn face(&mut self, start: Start) {
@@ -230,18 +336,18 @@ impl Walk<'_> {
 
     /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
     fn edges(&mut self, faces: &[Start], corners: usize) {
-        let mut seen: SmallVec<[u32; 8]> = SmallVec::new();
+        let mut seen = Once::default();
         for start in faces {
             let edges = self.topology.face_edges(start.face);
             let arity = edges.len() as u32;
             for &number in (0..arity).map(|i| &edges[start.edge(i, arity) as usize]) {
                 let edge = self.topology.edge(number);
-                if !is_sharp(edge.sharpness) || seen.contains(&number) {
+                if !is_sharp(edge.sharpness) {
                     continue;
                 }
-                let [a, b] = edge.vertices.map(|vertex| self.numbers[&vertex]);
-                if (a.min(b) as usize) < corners {
-                    seen.push(number);
+                let ends = edge.vertices.map(|vertex| self.vertices.find(vertex));
+                let [a, b] = ends.map(|end| end.expect("the faces have their edges' ends"));
+                if (a.min(b) as usize) < corners && seen.place(number).1 {
                     let ends = if a < b { [a, b] } else { [b, a] };
                     let next = if a < b {
                         edge.next
@@ -334,6 +440,60 @@ impl Configuration {
     /// The number of corners of face 0.
     pub(super) fn arity(&self) -> u32 {
         self.words[2]
+    }
+
+    /// The configuration that [`words`](Self::words) gave, from where they were stored; None where they tell none.
+    pub(super) fn from_words(words: &[u32]) -> Option<Configuration> {
+        let (&[flags, faces], mut rest) = words.split_first_chunk()?;
+        let mut vertices = 0;
+        for _ in 0..faces {
+            let (&arity, behind) = rest.split_first()?;
+            let (face, behind) = behind.split_at_checked(arity as usize)?;
+            for &vertex in face {
+                if vertex > vertices {
+                    return None;
+                }
+                vertices = vertices.max(vertex + 1);
+            }
+            rest = behind;
+            if arity < 3 {
+                return None;
+            }
+        }
+        let (&corners, rest) = rest.split_first()?;
+        let (sharpness, edges) = rest.split_at_checked(corners as usize)?;
+        let edges = edges.chunks(5);
+        let mut floats = sharpness.iter().copied();
+        let sound = flags <= 3
+            && (1..=*words.get(2)?).contains(&corners)
+            && floats.all(is_float)
+            && edges.into_iter().all(|edge| match *edge {
+                [a, b, ref floats @ ..] if floats.len() == 3 => {
+                    a < b && b < vertices && floats.iter().copied().all(is_float)
+                }
+                _ => false,
+            });
+        sound.then(|| Configuration {
+            words: words.to_vec(),
+        })
+    }
+
+    /// How many faces it lists.
+    pub(super) fn face_count(&self) -> u32 {
+        self.words[1]
+    }
+
+    /// How many vertices these have.
+    pub(super) fn vertex_count(&self) -> u32 {
+        let mut at = 2;
+        let mut vertices = 0;
+        for _ in 0..self.words[1] {
+            let arity = self.words[at] as usize;
+            let face = &self.words[at + 1..=at + arity];
+            vertices = face.iter().fold(vertices, |most, &v| most.max(v + 1));
+            at += 1 + arity;
+        }
+        vertices
     }
 
     /// The words, for storage.

@@ -110,6 +110,11 @@ impl Stretch {
 pub struct Strip(Vec<Stretch>);
 
 impl Strip {
+    /// Of stretches in the order along the edge.
+    pub(super) fn from_stretches(stretches: Vec<Stretch>) -> Strip {
+        Strip(stretches)
+    }
+
     /// The cells of a tree along edge 0..=3, which runs from the corner of this number to the next. None where the face is one cell: its points are
     /// relative to nothing that both sides of the edge have.
     pub(super) fn of(nodes: &[Node], edge: u32) -> Option<Strip> {

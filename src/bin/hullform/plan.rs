@@ -1,5 +1,6 @@
 //! `hullform plan`: how the faces of a model are planned.
 
+use crate::db::database;
 use crate::options::{self, Global};
 use crate::{model, print, print_json, progress};
 use clap::Args;
@@ -60,7 +61,7 @@ fn facts(mesh: &ControlMesh, arguments: &Arguments) -> Result<Map<String, Value>
     };
     let started = Instant::now();
     let model = Model::new(mesh.clone());
-    let prepared = method("quadtree")?.prepare(&model, options)?;
+    let prepared = method("quadtree")?.prepare_with(&model, options, database()?)?;
     let seconds = started.elapsed().as_secs_f64();
     let plans = prepared.plans.unwrap_or_default();
     let [internal, regular, boundary, crease, terminal, extraordinary] = plans.nodes;

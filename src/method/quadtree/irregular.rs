@@ -26,6 +26,14 @@ impl Irregular {
         }
     }
 
+    /// Where a vertex of the mesh stands in the ring; none where it does not.
+    pub fn place(&self, vertex: u32) -> Option<u16> {
+        let vertices = &self.ring.vertices;
+        let of = |&place: &u16| vertices[place as usize];
+        let at = self.order.binary_search_by_key(&vertex, of).ok()?;
+        Some(self.order[at])
+    }
+
     /// The order as it stands behind the ring in the list of control vertices: two 16-bit halves a word, the lower first.
     pub fn order_words(&self) -> impl Iterator<Item = u32> {
         let pairs = self.order.chunks(2);

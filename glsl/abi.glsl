@@ -88,10 +88,8 @@ const uint USE_SPARE = 128u;
 const uint USE_CUSP = 256u;
 // Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
 const uint USE_INSIDE = 512u;
-// Use flag of the inside: the patch is the mirror image of what its plan is for, with u and v exchanged.
-const uint USE_MIRRORED = 1024u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-const uint USE_SIDE_SHIFT = 11u;
+const uint USE_SIDE_SHIFT = 10u;
 // Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
 const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.
@@ -144,6 +142,10 @@ const uint PATCH_HALF = 16u;
 const uint PATCH_TURN_SHIFT = 5u;
 // Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
 const uint PATCH_CREASED = 65536u;
+// Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
+const uint PATCH_MIRRORED = 4194304u;
+// Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
+const uint PATCH_RING_SHIFT = 23u;
 // Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
 const uint PATCH_REFINED = 32768u;
 // Patch flag: which child of its ptex face a patch is; four bits. 0 is the whole face.
@@ -347,6 +349,10 @@ struct View {
     mat4 clip_from_model;
     // The eye in local units.
     vec3 eye;
+    // To the picture's right: a unit vector, or zero where the view has none.
+    vec3 right;
+    // Out of the picture towards who looks, likewise.
+    vec3 back;
     // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
     vec2 displacement;
 };

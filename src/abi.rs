@@ -263,6 +263,8 @@ constants! {
 
     /// Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
     PATCH_MIRRORED = 0x40_0000;
+    /// Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
+    PATCH_RING_SHIFT = 23;
 
     /// Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
     PATCH_REFINED = 0x8000;
@@ -473,6 +475,10 @@ structs! {
         clip_from_model: [[f32; 4]; 4],
         /// The eye in local units.
         eye: [f32; 3],
+        /// To the picture's right: a unit vector, or zero where the view has none.
+        right: [f32; 3],
+        /// Out of the picture towards who looks, likewise.
+        back: [f32; 3],
         /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
         displacement: [f32; 2],
     }

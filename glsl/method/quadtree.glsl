@@ -34,7 +34,8 @@ const uint CONTROL_POINTS = CONTROL_INVOCATIONS;
 
 #if defined(STAGE_VERTEX) && !defined(CACHED_POINTS)
 vec3 control_point(Patch record, uint number) {
-    return control_vertex(control_at(record.controls + min(number, uses[use_of(record, 0u)].size - 1u)));
+    uint ring = max(record.flags >> PATCH_RING_SHIFT & 63u, 1u);
+    return control_vertex(control_at(record.controls + min(number, ring - 1u)));
 }
 #endif
 
@@ -94,7 +95,7 @@ Ring use_ring(Patch record, uint number, uint stencils) {
 // Vertex i of it.
 vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : control_at(ring.places + i)); }
 
-// Places i and i + 1 in the order in which stencils of the inside are summed, the first in the lower half. It is that of the vertices' numbers in the mesh:
+// Places i, which is even, and i + 1 in the order in which stencils of the inside are summed, the first in the lower half. It is that of the vertices' numbers in the mesh:
 // so faces that share a point give it the same bits.
 uint summed_places(Patch record, Ring ring, uint i) {
     return ring.inside ? control_at(record.controls + ring.size + (i >> 1u)) : i | (i + 1u) << 16u;
@@ -119,7 +120,7 @@ vec3 stencil_point(Patch record, Ring ring, uint number) {
 #ifdef LONG_RINGS
     vec3 lost = vec3(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
-        uint pair = summed_places(record, ring, i);
+        uint pair = summed_places(record, ring, i & ~1u);
         uint at = (i & 1u) != 0u ? pair >> 16u : pair & 0xffffu;
         precise vec3 term = weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
         precise vec3 next = sum + term;
@@ -199,8 +200,8 @@ vec3 vertex_normal(Patch record, uint number) {
 
 #ifdef STAGE_CONTROL
 // Where the points of a use end in the slot, and where the slot does.
-uint ends_of(Patch record, uint level, uint pair) { return ends[bases.own[6] + borders[border_of(record)].ends].levels[min(level, HIGHEST_LEVEL)][pair]; }
-uint scratch_points(Patch record, uint level) { return ends_of(record, level, (USES - 1u) >> 1u) & 0xffffu; }
+uint ends_of(Patch record) { return bases.own[6] + borders[border_of(record)].ends; }
+uint scratch_points(Patch record, uint level) { return ends[ends_of(record)].levels[min(level, HIGHEST_LEVEL)][(USES - 1u) >> 1u] & 0xffffu; }
 
 // The parts of a slot: the heads, the plain vertices from USES on, the points of each use's plan.
 struct Parts {
@@ -211,8 +212,9 @@ struct Parts {
 Parts find_parts(Patch record, uint level) {
     Parts parts;
     parts.plain_end = USES + borders[border_of(record)].plain_count;
+    uint first = ends_of(record);
     for (uint number = 0u; number < USES; number += 2u) {
-        uint pair = ends_of(record, level, number >> 1u);
+        uint pair = ends[first].levels[min(level, HIGHEST_LEVEL)][number >> 1u];
         parts.ends[number] = pair & 0xffffu;
         if (number + 1u < USES) parts.ends[number + 1u] = pair >> 16u;
     }

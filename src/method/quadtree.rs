@@ -178,6 +178,8 @@ fn irregular(
         let vertices = &patch.ring.vertices;
         let record = add(&mut pass, model, patch.part, turn, vertices);
         record.plan = border;
+        let ring = (vertices.len() as u32).min(abi::CONTROL_INVOCATIONS);
+        record.flags |= ring << abi::PATCH_RING_SHIFT;
         if patch.ring.mirrored {
             record.flags |= abi::PATCH_MIRRORED;
         }

@@ -95,8 +95,8 @@ impl PackedRows {
         let number = |key: &u32| set.binary_search(key).unwrap_or_default() as u16;
         let pattern: SmallVec<[u16; 32]> = keys.iter().map(number).collect();
         let width = match set.len() {
-            ..=16 => 0,
-            ..=256 => 1,
+            0..=16 => 0,
+            17..=256 => 1,
             _ => 2,
         };
         let (points, greatest) = (self.sets.len() + set.len(), 1 << abi::STENCIL_SHIFT);

@@ -1,7 +1,7 @@
 //! `hullform db` and `--db`: the file that plans are kept in from run to run.
 
 use crate::options::{self, Global};
-use crate::{print, print_json};
+use crate::{places, print, print_json};
 use clap::{Args, Subcommand};
 use hullform::error::Place;
 use hullform::plan::Database;
@@ -65,14 +65,9 @@ pub fn database() -> Result<&'static Database> {
     Ok(OPENED.get_or_init(|| database))
 }
 
-/// Where the database is unless it is said (XDG Base Directory Specification, `XDG_CACHE_HOME`): what is lost there can be made again.
+/// Where the database is unless it is said.
 fn usual() -> Option<PathBuf> {
-    let folder = |name: &str| {
-        let folder = std::env::var_os(name).map(PathBuf::from);
-        folder.filter(|folder| folder.is_absolute())
-    };
-    let cache = folder("XDG_CACHE_HOME").or_else(|| Some(folder("HOME")?.join(".cache")));
-    Some(cache?.join("hullform/plans.db"))
+    Some(places::caches()?.join("plans.db"))
 }
 
 /// Does what is asked with the database's file.

@@ -181,7 +181,10 @@ mod tests {
             let start = bytes.len();
             bytes.extend(&two);
             let (found, _) = scan(&bytes, HEADER);
-            assert_eq!(found, [start..bytes.len()], "{cut} bytes");
+            assert!(
+                matches!(&found[..], [one] if *one == (start..bytes.len())),
+                "{cut} bytes"
+            );
         }
     }
 

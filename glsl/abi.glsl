@@ -39,7 +39,7 @@ const uint BINDING_INSTANCES = 10u;
 // Frame, binding: `View` records.
 const uint BINDING_VIEWS = 11u;
 // How many tables a method may have of its own.
-const uint TABLES = 4u;
+const uint TABLES = 8u;
 // Step of points: positions are sums of weighted control vertices.
 const uint POINTS_BLEND = 0u;
 // Step of points: the same, and normals are perpendicular to two more such sums, the tangents.
@@ -66,6 +66,8 @@ const uint CONTROL_INVOCATIONS = 32u;
 const uint HIGHEST_LEVEL = 10u;
 // What a patch is evaluated by: the inside, its four edges, its four corners.
 const uint USES = 9u;
+// So many products of a weight and a vertex the points of a use take at most, for each word of all tables.
+const uint PRODUCTS_A_WORD = 16u;
 // Instead of the number of a pair of tangents: there is none.
 const uint NO_TANGENTS = 4294967295u;
 // Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
@@ -122,9 +124,13 @@ const uint JOB_LIMIT = 2u;
 const uint JOB_NORMAL = 3u;
 // In its place where points are the vertices themselves.
 const uint ORIGIN_NONE = 15u;
-// The first word of a stencil: its sum is relative to the ring's first vertex.
+// In the first word of a stencil: its sum is relative to the ring's first vertex.
 const uint STENCIL_OWN = 0u;
-// The first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
+// Where it stands there, above the place of the set of weights.
+const uint STENCIL_SHIFT = 28u;
+// In the second word of a stencil, above the place of the pattern: binary logarithm of the bits of a number, less 2.
+const uint WIDTH_SHIFT = 30u;
+// In the first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
 const uint STENCIL_CORNER = 5u;
 // Points in a level of a terminal node: sixteen for each of its children x + 2 y.
 const uint TERMINAL_POINTS = 64u;
@@ -136,6 +142,10 @@ const uint PATCH_HALF = 16u;
 const uint PATCH_TURN_SHIFT = 5u;
 // Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
 const uint PATCH_CREASED = 65536u;
+// Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
+const uint PATCH_MIRRORED = 4194304u;
+// Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
+const uint PATCH_RING_SHIFT = 23u;
 // Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
 const uint PATCH_REFINED = 32768u;
 // Patch flag: which child of its ptex face a patch is; four bits. 0 is the whole face.
@@ -211,27 +221,39 @@ struct Patch {
     uint valences;
 };
 
-// What a patch is evaluated by, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
+// What a patch is evaluated by: numbers of `Use` records, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
 struct Border {
-    // How many vertices the rings of the plans have; 0 where there is no plan.
-    uint sizes[9];
-    // Where the plans' weights begin: for each stencil a word `STENCIL_...`, and a weight for each vertex of the ring.
-    uint weights[9];
-    // The nodes that walks begin with.
-    uint roots[9];
-    // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
-    // inside, whose ring is the patch's.
-    uint rings[9];
-    // `USE_...` flags.
-    uint flags[9];
+    // These.
+    uint uses[9];
     // Where it stands which vertices of the 1-ring are evaluated themselves.
     uint plain;
     // How many these are.
     uint plain_count;
-    // At level 0..=10, where in a patch's slot the points of each plan end. The slot ends where the last do.
-    uint ends[11][9];
-    // At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_TANGENTS`.
-    uint nearby[4];
+    // Its `Ends` record.
+    uint ends;
+};
+
+// What a patch is evaluated by at some place.
+struct Use {
+    // How many vertices the plan's ring has; 0 where there is no plan.
+    uint size;
+    // Where the plan's stencils begin, two words each: where the set of weights begins and `STENCIL_...` << 28; and where the pattern begins, which
+    // has the number of a weight for each vertex of the ring, counted in units of four bits, and the width of a number << 30.
+    uint rows;
+    // The node that walks begin with. Of a corner with a plan, the number, among the stencils of the inside, of the first of two tangents near it;
+    // or `NO_TANGENTS`.
+    uint root;
+    // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
+    // inside, whose ring is the patch's.
+    uint ring;
+    // `USE_...` flags.
+    uint flags;
+};
+
+// Where in a patch's slot the points of each use end. The slot ends where the last do.
+struct Ends {
+    // At level 0..=10, nine numbers, two 16-bit halves a word, the lower first.
+    uint levels[11][5];
 };
 
 // A point that is computed from control vertices.
@@ -316,9 +338,9 @@ struct Bases {
     uint controls;
     // Texture coordinates, four a patch.
     uint texture;
-    // The method's own tables; of control points that are cached, behind four of these, where the places of each patch's points begin, these places,
+    // The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
     // and the jobs that compute points.
-    uint own[7];
+    uint own[11];
 };
 
 // What a surface is seen with.

@@ -17,5 +17,5 @@ layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer JobTa
 void main() {
     uint number = frame.first_patch + gl_GlobalInvocationID.x;
     if (number >= frame.end_patch) return;
-    cached[frame.counter + gl_GlobalInvocationID.x] = job_point(jobs[bases.own[6] + number]);
+    cached[frame.counter + gl_GlobalInvocationID.x] = job_point(jobs[bases.own[TABLES + 2u] + number]);
 }

@@ -152,7 +152,7 @@ constants! {
     /// Frame, binding: `View` records.
     BINDING_VIEWS = 11;
     /// How many tables a method may have of its own.
-    TABLES = 4;
+    TABLES = 8;
 
     /// Step of points: positions are sums of weighted control vertices.
     POINTS_BLEND = 0;
@@ -181,6 +181,8 @@ constants! {
     HIGHEST_LEVEL = 10;
     /// What a patch is evaluated by: the inside, its four edges, its four corners.
     USES = 9;
+    /// So many products of a weight and a vertex the points of a use take at most, for each word of all tables.
+    PRODUCTS_A_WORD = 16;
     /// Instead of the number of a pair of tangents: there is none.
     NO_TANGENTS = 0xffff_ffff;
     /// Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
@@ -238,9 +240,13 @@ constants! {
     JOB_NORMAL = 3;
     /// In its place where points are the vertices themselves.
     ORIGIN_NONE = 15;
-    /// The first word of a stencil: its sum is relative to the ring's first vertex.
+    /// In the first word of a stencil: its sum is relative to the ring's first vertex.
     STENCIL_OWN = 0;
-    /// The first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
+    /// Where it stands there, above the place of the set of weights.
+    STENCIL_SHIFT = 28;
+    /// In the second word of a stencil, above the place of the pattern: binary logarithm of the bits of a number, less 2.
+    WIDTH_SHIFT = 30;
+    /// In the first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
     STENCIL_CORNER = 5;
     /// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
     TERMINAL_POINTS = 64;
@@ -254,6 +260,11 @@ constants! {
 
     /// Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
     PATCH_CREASED = 0x1_0000;
+
+    /// Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
+    PATCH_MIRRORED = 0x40_0000;
+    /// Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
+    PATCH_RING_SHIFT = 23;
 
     /// Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
     PATCH_REFINED = 0x8000;
@@ -336,27 +347,39 @@ structs! {
         valences: u32,
     }
 
-    /// What a patch is evaluated by, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
+    /// What a patch is evaluated by: numbers of `Use` records, number 0 inside, 1..=4 on its edges, 5..=8 at its corners.
     Border {
-        /// How many vertices the rings of the plans have; 0 where there is no plan.
-        sizes: [u32; 9],
-        /// Where the plans' weights begin: for each stencil a word `STENCIL_...`, and a weight for each vertex of the ring.
-        weights: [u32; 9],
-        /// The nodes that walks begin with.
-        roots: [u32; 9],
-        /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
-        /// inside, whose ring is the patch's.
-        rings: [u32; 9],
-        /// `USE_...` flags.
-        flags: [u32; 9],
+        /// These.
+        uses: [u32; 9],
         /// Where it stands which vertices of the 1-ring are evaluated themselves.
         plain: u32,
         /// How many these are.
         plain_count: u32,
-        /// At level 0..=10, where in a patch's slot the points of each plan end. The slot ends where the last do.
-        ends: [[u32; 9]; 11],
-        /// At each corner the number, among the stencils of the inside, of the first of two tangents near it; or `NO_TANGENTS`.
-        nearby: [u32; 4],
+        /// Its `Ends` record.
+        ends: u32,
+    }
+
+    /// What a patch is evaluated by at some place.
+    Use {
+        /// How many vertices the plan's ring has; 0 where there is no plan.
+        size: u32,
+        /// Where the plan's stencils begin, two words each: where the set of weights begins and `STENCIL_...` << 28; and where the pattern begins, which
+        /// has the number of a weight for each vertex of the ring, counted in units of four bits, and the width of a number << 30.
+        rows: u32,
+        /// The node that walks begin with. Of a corner with a plan, the number, among the stencils of the inside, of the first of two tangents near it;
+        /// or `NO_TANGENTS`.
+        root: u32,
+        /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
+        /// inside, whose ring is the patch's.
+        ring: u32,
+        /// `USE_...` flags.
+        flags: u32,
+    }
+
+    /// Where in a patch's slot the points of each use end. The slot ends where the last do.
+    Ends {
+        /// At level 0..=10, nine numbers, two 16-bit halves a word, the lower first.
+        levels: [[u32; 5]; 11],
     }
 
     /// A point that is computed from control vertices.
@@ -441,9 +464,9 @@ structs! {
         controls: u32,
         /// Texture coordinates, four a patch.
         texture: u32,
-        /// The method's own tables; of control points that are cached, behind four of these, where the places of each patch's points begin, these places,
+        /// The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
         /// and the jobs that compute points.
-        own: [u32; 7],
+        own: [u32; 11],
     }
 
     /// What a surface is seen with.

@@ -380,7 +380,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 30] = [
+const NAMED: [(&str, &str, &str); 31] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -388,6 +388,7 @@ const NAMED: [(&str, &str, &str); 30] = [
     ("src/conformance/robustness.rs", "quadtree", RING),
     ("tests/common/surfaces.rs", "quadtree", PLANS),
     ("tests/plans.rs", "quadtree", PLANS),
+    ("tests/database.rs", "quadtree", PLANS),
     ("tests/gpu/cache.rs", "quadtree", RING),
     ("tests/gpu/lifetimes.rs", "quadtree", RING),
     ("tests/gpu/ring.rs", "quadtree", RING),

@@ -59,6 +59,7 @@ fn a_plan_is_told_as_json() {
         "regular",
         "irregular",
         "plans",
+        "plans_without_sharing",
         "edge_plans",
         "vertex_plans",
         "nodes",

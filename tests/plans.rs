@@ -9,9 +9,10 @@ use hullform::abi;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
 use hullform::method::{METHODS, Method, method};
+use hullform::plan::database::Kind;
 use hullform::plan::{
-    Catalogue, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Ring, VertexKind,
-    VertexPlan, walk,
+    Configuration, Database, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Ring,
+    VertexKind, VertexPlan, walk,
 };
 use hullform::subdivision::{Blend, LimitSurface};
 use hullform::tessellation::{Domain, Levels, required_level};
@@ -34,7 +35,8 @@ fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
         if arity == 4 {
             rings.push((first, of_quad(topology, face)));
         } else {
-            rings.extend((0..arity).map(|i| (first + i as usize, from_corner(topology, face, i))));
+            let of_part = |i| Ring::of_part(topology, face, i).expect("it is a corner");
+            rings.extend((0..arity).map(|i| (first + i as usize, of_part(i))));
         }
     }
     rings
@@ -42,11 +44,22 @@ fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
 
 /// The different plans of a mesh.
 fn plans(mesh: &ControlMesh, options: PlanOptions) -> Vec<Plan> {
-    let mut catalogue = Catalogue::default();
-    for (_, ring) in rings(&Topology::new(mesh)) {
-        catalogue.number(ring.configuration);
-    }
-    catalogue.build(options).expect("the options are sound")
+    let database = Database::default();
+    let rings = rings(&Topology::new(mesh));
+    let all: Vec<&Configuration> = rings.iter().map(|(_, ring)| &ring.configuration).collect();
+    let found = database.plans(Kind::Inside, options, &all);
+    let mut found = found.expect("the options are sound");
+    assert!(
+        found
+            .iter()
+            .all(|&(number, _)| (number as usize) < database.len())
+    );
+    found.sort_by_key(|&(number, _)| number);
+    found.dedup_by_key(|&mut (number, _)| number);
+    found
+        .iter()
+        .map(|(_, entry)| entry.plan().clone())
+        .collect()
 }
 
 fn packed(plans: &[Plan]) -> PackedPlans {

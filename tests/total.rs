@@ -8,8 +8,9 @@ use hullform::method::{
     DepthTags, Displacement, METHODS, MethodOptions, Outline, Pass, Prepared, SurfacePoint,
     TableOptions, from_ptex, is_on_hexagon, method, method_for, prepare_by_default, to_ptex,
 };
+use hullform::plan::database::Kind;
 use hullform::plan::{
-    Catalogue, Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Plans, Ring,
+    Configuration, Database, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Plans, Ring,
     VertexKind, VertexPlan, walk,
 };
 use hullform::subdivision::{
@@ -219,13 +220,15 @@ fn plans_are_made_of_what_they_need_or_refused() {
                 max_level,
                 ..options
             };
-            let mut catalogue = Catalogue::default();
-            catalogue.number(configuration.clone());
+            let database = Database::default();
             assert!(matches!(
                 Plan::build(configuration, options),
                 Err(Error::Option { .. })
             ));
-            assert!(catalogue.build(options).is_err());
+            for kind in Kind::ALL {
+                assert!(database.plans(kind, options, &[configuration]).is_err());
+            }
+            assert!(database.is_empty());
             assert!(EdgePlan::build(configuration, EdgeKind::Whole, options).is_err());
             assert!(VertexPlan::build(configuration, VertexKind::Control, options).is_err());
         }

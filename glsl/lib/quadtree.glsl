@@ -8,11 +8,38 @@
 // The method's own tables, in this order.
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer NodeTable { Node nodes[]; };
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer PointTable { uvec2 point_rows[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer StencilTable { uvec2 stencils[]; };
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer PatternTable { uint patterns[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer UseTable { Use uses[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer EndTable { Ends ends[]; };
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer BorderTable { Border borders[]; };
 
-// Where the border of a patch is.
-uint border_of(Patch record) { return bases.own[3] + record.plan; }
+// Where the border of a patch is, and what it is evaluated by at some place.
+uint border_of(Patch record) { return bases.own[7] + record.plan; }
+uint use_of(Patch record, uint number) { return bases.own[5] + borders[border_of(record)].uses[number]; }
+
+// The row of a stencil: what it is relative to, where its set of weights begins, and where its pattern, in units of four bits.
+struct StencilRow {
+    uint corner;
+    uint set;
+    uint pattern;
+    uint width;
+    uint mask;
+};
+
+StencilRow stencil_row(uint number) {
+    uvec2 row = stencils[bases.own[2] + number];
+    uint set = bases.own[3] + (row.x & ((1u << STENCIL_SHIFT) - 1u));
+    uint width = min(row.y >> WIDTH_SHIFT, 2u);
+    return StencilRow(row.x >> STENCIL_SHIFT, set, row.y & ((1u << WIDTH_SHIFT) - 1u), width, (1u << (4u << width)) - 1u);
+}
+
+// The weight of a vertex of the ring.
+float weight_at(StencilRow row, uint place) {
+    uint at = row.pattern + (place << row.width);
+    return weights[row.set + (patterns[bases.own[4] + (at >> 3u)] >> (4u * (at & 7u)) & row.mask)];
+}
 
 // The row of points that begins at `number` in the nodes' lists: two 16-bit halves a word, the lower first.
 uvec4 node_row(uint number) {

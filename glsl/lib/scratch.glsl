@@ -18,10 +18,10 @@ layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer Cache {
 #endif
 
 // Where the places of a patch's points begin.
-uint slot_of(uint number) { return bases.own[5] + words[bases.own[4] + number]; }
+uint slot_of(uint number) { return bases.own[TABLES + 1u] + words[bases.own[TABLES] + number]; }
 
 // Among them, those of a use.
-uint use_points(uint slot, uint number) { return bases.own[5] + words[slot + number]; }
+uint use_points(uint slot, uint number) { return bases.own[TABLES + 1u] + words[slot + number]; }
 
 // What the points of a use are relative to where their plan says nothing else.
 vec3 use_origin(uint slot, uint number) { return cached[words[slot + USES + number]]; }

@@ -34,9 +34,19 @@ const uint CONTROL_POINTS = CONTROL_INVOCATIONS;
 
 #if defined(STAGE_VERTEX) && !defined(CACHED_POINTS)
 vec3 control_point(Patch record, uint number) {
-    return control_vertex(control_at(record.controls + min(number, borders[border_of(record)].sizes[0] - 1u)));
+    uint ring = max(record.flags >> PATCH_RING_SHIFT & 63u, 1u);
+    return control_vertex(control_at(record.controls + min(number, ring - 1u)));
 }
 #endif
+
+// Whether the patch is the mirror image of what its inside's plan is for, with u and v exchanged.
+bool is_mirrored(Patch record) { return (record.flags & PATCH_MIRRORED) != 0u; }
+
+// The use of the corner that a plan of the inside means by a STENCIL_CORNER.
+uint use_of_corner(Patch record, uint corner) {
+    uint plain = min(corner, USES - 1u);
+    return is_mirrored(record) ? STENCIL_CORNER + (3u & (4u + STENCIL_CORNER - plain)) : plain;
+}
 
 #if defined(STAGE_COMPUTE) || (defined(STAGE_CONTROL) && !defined(CACHED_POINTS))
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
@@ -62,38 +72,41 @@ void add_compensated(inout vec3 sum, inout vec3 lost, vec3 term) {
     lost = more;
 }
 
-// The ring of a use: how many vertices it has, where their numbers in the patch's ring stand, and where its weights begin. The inside has the
-// patch's ring itself.
+// The ring of a use: how many vertices it has, where their numbers in the patch's ring stand, and its first stencil.
 struct Ring {
     uint size;
     uint places;
-    uint weights;
+    uint rows;
     bool inside;
 };
 
 // Tables are read word by word: of a record that is passed by value, compilers copy all for each invocation.
 //
-// Bounded by the weights that there are for so many stencils: a plan that is garbage must not keep the device busy for ever. The factor is for
-// rounding.
+// Bounded by the words that there are for so many stencils: a plan that is garbage must not keep the device busy for ever. The host sees to it that
+// sound plans are within.
 Ring use_ring(Patch record, uint number, uint stencils) {
-    uint size = borders[border_of(record)].sizes[number];
-    precise float needed = float(size + 1u) * float(stencils);
-    precise float most = 1.00001 * float(weights.length());
-    return Ring(needed <= most ? size : 0u, borders[border_of(record)].rings[number], bases.own[2] + borders[border_of(record)].weights[number], number == 0u);
+    uint used = use_of(record, number);
+    uint size = uses[used].size;
+    precise float needed = float(size) * float(stencils);
+    precise float most = float(PRODUCTS_A_WORD) * float(weights.length());
+    return Ring(needed <= most ? size : 0u, uses[used].ring, uses[used].rows, number == 0u);
 }
 
 // Vertex i of it.
 vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : control_at(ring.places + i)); }
 
-// Where the row of a stencil begins: with a word that tells what it is relative to, then a weight for each vertex of the ring.
-uint stencil_row(Ring ring, uint number) { return ring.weights + number * (ring.size + 1u); }
+// Places i, which is even, and i + 1 in the order in which stencils of the inside are summed, the first in the lower half. It is that of the vertices' numbers in the mesh:
+// so faces that share a point give it the same bits.
+uint summed_places(Patch record, Ring ring, uint i) {
+    return ring.inside ? control_at(record.controls + ring.size + (i >> 1u)) : i | (i + 1u) << 16u;
+}
 
-// Place i in the order in which stencils of the inside are summed, which is that of the vertices' numbers in the mesh: so faces that share a point give
-// it the same bits.
-uint summed_place(Patch record, Ring ring, uint i) {
-    if (!ring.inside) return i;
-    uint word = control_at(record.controls + ring.size + (i >> 1u));
-    return (i & 1u) != 0u ? word >> 16u : word & 0xffffu;
+// Where the vertex stands in the patch's ring that a stencil is relative to. A quad's corners come first there, in the plan's order.
+uint origin_place(Patch record, Ring ring, uint corner) {
+    if (!ring.inside) return control_at(ring.places);
+    if (corner == STENCIL_OWN) return 0u;
+    if ((record.flags & PATCH_HALF) == 0u) return corner - STENCIL_CORNER;
+    return control_at(uses[use_of(record, use_of_corner(record, corner))].ring);
 }
 
 // A stencil's sum over a ring, relative to a vertex near it: so it errs by what the ring's own size has for rounding.
@@ -101,18 +114,15 @@ uint summed_place(Patch record, Ring ring, uint i) {
 // Rings too long for the vertex shader are also too long for a plain sum: where hundreds of faces meet, the tangents of neighbours differ by
 // less than it would lose.
 vec3 stencil_point(Patch record, Ring ring, uint number) {
-    uint row = stencil_row(ring, number);
-    uint corner = floatBitsToUint(weights[row]);
-    uint place = ring.inside ? 0u : control_at(ring.places);
-    if (ring.inside && corner != STENCIL_OWN) place = control_at(borders[border_of(record)].rings[min(corner, USES - 1u)]);
-    vec3 origin = ring_point(record, place);
-    uint weight = row + 1u;
+    StencilRow row = stencil_row(ring.rows + number);
+    vec3 origin = ring_point(record, origin_place(record, ring, row.corner));
     precise vec3 sum = vec3(0.0);
 #ifdef LONG_RINGS
     vec3 lost = vec3(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
-        uint at = summed_place(record, ring, i);
-        precise vec3 term = weights[weight + at] * (ring_vertex(record, ring, at) - origin);
+        uint pair = summed_places(record, ring, i & ~1u);
+        uint at = (i & 1u) != 0u ? pair >> 16u : pair & 0xffffu;
+        precise vec3 term = weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
         precise vec3 next = sum + term;
         if (ring.size > CONTROL_INVOCATIONS) {
             add_compensated(sum, lost, term);
@@ -121,9 +131,14 @@ vec3 stencil_point(Patch record, Ring ring, uint number) {
         }
     }
 #else
-    for (uint i = 0u; i < ring.size; ++i) {
-        uint at = summed_place(record, ring, i);
-        sum += weights[weight + at] * (ring_vertex(record, ring, at) - origin);
+    for (uint i = 0u; i < ring.size; i += 2u) {
+        uint pair = summed_places(record, ring, i);
+        uint at = pair & 0xffffu;
+        sum += weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
+        if (i + 1u < ring.size) {
+            at = pair >> 16u;
+            sum += weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
+        }
     }
 #endif
     return sum;
@@ -131,8 +146,8 @@ vec3 stencil_point(Patch record, Ring ring, uint number) {
 
 // The pair of tangents whose first is stencil `number`, as `stencil_point`.
 Tangents ring_tangents(Patch record, Ring ring, uint number) {
-    uint first = stencil_row(ring, number) + 1u;
-    uint second = stencil_row(ring, number + 1u) + 1u;
+    StencilRow first = stencil_row(ring.rows + number);
+    StencilRow second = stencil_row(ring.rows + number + 1u);
     vec3 origin = ring_vertex(record, ring, 0u);
     vec3 du = vec3(0.0);
     vec3 dv = vec3(0.0);
@@ -142,7 +157,7 @@ Tangents ring_tangents(Patch record, Ring ring, uint number) {
     precise vec2 total = vec2(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
         precise vec3 spoke = ring_vertex(record, ring, i) - origin;
-        vec2 pair = vec2(weights[first + i], weights[second + i]);
+        vec2 pair = vec2(weight_at(first, i), weight_at(second, i));
         precise vec3 along_u = pair.x * spoke;
         precise vec3 along_v = pair.y * spoke;
         add_compensated(du, lost_u, along_u);
@@ -158,8 +173,8 @@ Tangents ring_tangents(Patch record, Ring ring, uint number) {
 //
 // There are two pairs of tangents at most, the limit's and those that may stand in for it; the loop makes them one piece of code.
 vec3 vertex_normal(Patch record, uint number) {
-    uint flags = borders[border_of(record)].flags[number];
-    uint near_pair = borders[border_of(record)].nearby[number - 5u];
+    uint flags = uses[use_of(record, number)].flags;
+    uint near_pair = uses[use_of(record, number)].root;
     bool has_near = near_pair != NO_TANGENTS;
     uint limit_pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
     Tangents limit;
@@ -171,6 +186,8 @@ vec3 vertex_normal(Patch record, uint number) {
         ring.size = wanted ? ring.size : 0u;
         Tangents tangents = ring_tangents(record, ring, i == 0u ? limit_pair : has_near ? near_pair : limit_pair + 2u);
         normal = clear_normal(tangents);
+        // The plan's tangents go the other way round there.
+        if (i == 1u && has_near && is_mirrored(record)) normal = -normal;
         if (i == 0u) {
             limit = tangents;
             limit_normal = normal;
@@ -183,8 +200,8 @@ vec3 vertex_normal(Patch record, uint number) {
 
 #ifdef STAGE_CONTROL
 // Where the points of a use end in the slot, and where the slot does.
-uint points_end(Patch record, uint level, uint number) { return borders[border_of(record)].ends[min(level, HIGHEST_LEVEL)][number]; }
-uint scratch_points(Patch record, uint level) { return points_end(record, level, USES - 1u); }
+uint ends_of(Patch record) { return bases.own[6] + borders[border_of(record)].ends; }
+uint scratch_points(Patch record, uint level) { return ends[ends_of(record)].levels[min(level, HIGHEST_LEVEL)][(USES - 1u) >> 1u] & 0xffffu; }
 
 // The parts of a slot: the heads, the plain vertices from USES on, the points of each use's plan.
 struct Parts {
@@ -195,7 +212,12 @@ struct Parts {
 Parts find_parts(Patch record, uint level) {
     Parts parts;
     parts.plain_end = USES + borders[border_of(record)].plain_count;
-    for (uint number = 0u; number < USES; ++number) parts.ends[number] = points_end(record, level, number);
+    uint first = ends_of(record);
+    for (uint number = 0u; number < USES; number += 2u) {
+        uint pair = ends[first].levels[min(level, HIGHEST_LEVEL)][number >> 1u];
+        parts.ends[number] = pair & 0xffffu;
+        if (number + 1u < USES) parts.ends[number + 1u] = pair >> 16u;
+    }
     return parts;
 }
 
@@ -220,9 +242,10 @@ Part find_part(Parts parts, uint next) {
 
 // The head of use `number`.
 vec4 use_head(Patch record, Parts parts, uint number) {
-    bool planned = borders[border_of(record)].sizes[number] > 0u;
-    bool inside = (borders[border_of(record)].flags[number] & USE_INSIDE) != 0u;
-    uint first = number == 0u ? 0u : control_at(borders[border_of(record)].rings[number]);
+    uint used = use_of(record, number);
+    bool planned = uses[used].size > 0u;
+    bool inside = (uses[used].flags & USE_INSIDE) != 0u;
+    uint first = number == 0u ? 0u : control_at(uses[used].ring);
     uint start = parts.plain_end;
     for (uint i = 1u; i < USES; ++i) start = number == i && !inside ? parts.ends[i - 1u] : start;
     vec3 origin = planned || number >= STENCIL_CORNER ? ring_point(record, first) : vec3(0.0);
@@ -278,7 +301,7 @@ Row scratch_row(uint first, uint number, Basis u) {
 
 // Not on infinite creases and at cusps.
 bool has_one_normal(Patch record, vec2 uv) {
-    return (borders[border_of(record)].flags[find_place(record.flags, uv).number] & USE_CREASED) == 0u;
+    return (uses[use_of(record, find_place(record.flags, uv).number)].flags & USE_CREASED) == 0u;
 }
 
 // Row 1 is the position on an edge, row 2 that plus the derivative across.
@@ -290,25 +313,27 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     memoryBarrierBuffer();
 #endif
     Place place = find_place(record.flags, uv);
-    uint flags = borders[border_of(record)].flags[place.number];
+    uint used = use_of(record, place.number);
+    uint flags = uses[used].flags;
     uint first = use_points(slot, place.number);
     if ((flags & USE_LIMIT) != 0u) {
         precise vec3 vertex = point_at(first) + use_origin(slot, place.number);
         return Point(vertex, point_at(first + 1u));
     }
-    vec2 local = place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
-    Leaf leaf = find_leaf(borders[border_of(record)].roots[place.number], local);
+    bool exchanged = place.number == 0u && is_mirrored(record);
+    vec2 local = exchanged ? uv.yx : place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
+    Leaf leaf = find_leaf(uses[used].root, local);
     Basis u, v;
     creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
     if (leaf.kind == NODE_CURVE) v = CURVE;
     uint row = leaf.points + 16u * (flags >> USE_SIDE_SHIFT);
     Surface surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + 4u, u),
                               scratch_row(first, row + 8u, u), scratch_row(first, row + 12u, u));
-    surface = turned(surface, flags >> USE_TURN_SHIFT & 3u);
+    surface = exchanged ? Surface(surface.position, surface.dv, surface.du) : turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
     vec3 base = leaf.base > 0u ? point_at(first + max(leaf.base, 1u) - 1u) : vec3(0.0);
-    vec3 origin = leaf.origin == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, leaf.origin > 0u ? min(leaf.origin, USES - 1u) : place.number);
+    vec3 origin = leaf.origin == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, leaf.origin > 0u ? use_of_corner(record, leaf.origin) : place.number);
     precise vec3 position = (surface.position + base) + origin;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;
@@ -318,8 +343,9 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 
 #ifdef STAGE_FRAGMENT
 Cell cell_at(Patch record, vec2 uv) {
-    Leaf leaf = find_leaf(borders[border_of(record)].roots[0], uv);
-    return Cell(leaf.kind, leaf.uv, leaf.scale);
+    bool mirrored = is_mirrored(record);
+    Leaf leaf = find_leaf(uses[use_of(record, 0u)].root, mirrored ? uv.yx : uv);
+    return Cell(leaf.kind, mirrored ? leaf.uv.yx : leaf.uv, leaf.scale);
 }
 #endif
 

@@ -309,11 +309,15 @@ enum Spoiled {
     Patches,
 }
 
-const SPOILED: [(&str, Spoiled); 6] = [
+const SPOILED: [(&str, Spoiled); 10] = [
     ("nodes", Spoiled::Table(0)),
     ("points", Spoiled::Table(1)),
-    ("weights", Spoiled::Table(2)),
-    ("borders", Spoiled::Table(3)),
+    ("stencils", Spoiled::Table(2)),
+    ("weights", Spoiled::Table(3)),
+    ("patterns", Spoiled::Table(4)),
+    ("uses", Spoiled::Table(5)),
+    ("ends", Spoiled::Table(6)),
+    ("borders", Spoiled::Table(7)),
     ("controls", Spoiled::Controls),
     ("patches", Spoiled::Patches),
 ];

@@ -32,6 +32,7 @@ use crate::method::unit::unit;
 use crate::method::{
     Contract, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals, TableOptions,
 };
+use crate::plan::Database;
 use crate::subdivision::{refine_all, scheme_rings};
 use crate::tessellation::Domain;
 
@@ -61,7 +62,7 @@ pub const METHOD: Method = Method {
     prepare,
 };
 
-fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
+fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let options = options.tables.check()?;
     let scheme = model.mesh().options().scheme;
     let once = refine_all(model.topology(), scheme);

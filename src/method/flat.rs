@@ -11,6 +11,7 @@ use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::surface::{Controls, SurfacePoint, Tangents, UNIT, reach};
 use crate::method::{self, Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::plan::Database;
 use crate::tessellation::Domain;
 
 /// The row of the table.
@@ -31,7 +32,7 @@ pub const METHOD: Method = Method {
     prepare,
 };
 
-fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let topology = model.topology();
     let mut quads = Pass::new("flat", Domain::Quads, 4, quad);
     let mut triangles = Pass::new("flat_triangles", Domain::Triangles, 3, triangle);

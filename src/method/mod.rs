@@ -73,6 +73,7 @@ use rayon::prelude::*;
 use crate::abi;
 use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
+use crate::plan::Database;
 use crate::tessellation::Domain;
 use origin::Origin;
 
@@ -83,6 +84,8 @@ pub use outline::Outline;
 pub use points::Points;
 pub use ptex::{from_ptex, to_ptex};
 pub use quadtree::PlanStatistics;
+#[cfg(feature = "host")]
+pub(crate) use quadtree::node_kind;
 pub use surface::{Controls, SurfacePoint};
 pub use table::Table;
 pub use tags::DepthTags;
@@ -158,7 +161,7 @@ pub struct Method {
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
-    prepare: fn(&Model, MethodOptions) -> Result<Prepared>,
+    prepare: fn(&Model, MethodOptions, &Database) -> Result<Prepared>,
 }
 
 impl Method {
@@ -167,8 +170,22 @@ impl Method {
     /// # Errors
     /// As [`Method::check_model`]; [`Error::Option`] names an option that is out of range.
     pub fn prepare(&self, model: &Model, options: impl Into<MethodOptions>) -> Result<Prepared> {
+        self.prepare_with(model, options, &Database::default())
+    }
+
+    /// The same with plans of a database, which gets those that it lacks: models that share one share what is alike, and an edited model has most of its
+    /// plans already.
+    ///
+    /// # Errors
+    /// As [`Method::prepare`].
+    pub fn prepare_with(
+        &self,
+        model: &Model,
+        options: impl Into<MethodOptions>,
+        database: &Database,
+    ) -> Result<Prepared> {
         self.check_model(model)?;
-        let mut prepared = (self.prepare)(model, options.into())?;
+        let mut prepared = (self.prepare)(model, options.into(), database)?;
         prepared.method = self.name;
         prepared.outline = Outline::new(model.topology());
         prepared.origin = Origin::new(model);
@@ -243,6 +260,18 @@ pub fn prepare_by_default(
     model: &Model,
     options: impl Into<MethodOptions>,
 ) -> Result<(Prepared, Vec<Error>)> {
+    prepare_by_default_with(model, options, &Database::default())
+}
+
+/// The same with plans of a database, see [`Method::prepare_with`].
+///
+/// # Errors
+/// As [`prepare_by_default`].
+pub fn prepare_by_default_with(
+    model: &Model,
+    options: impl Into<MethodOptions>,
+    database: &Database,
+) -> Result<(Prepared, Vec<Error>)> {
     let options = options.into();
     let mut able: Vec<&Method> = METHODS
         .iter()
@@ -252,7 +281,7 @@ pub fn prepare_by_default(
     able.sort_by_key(|method| method.contract.reproduces.remoteness());
     let mut refusals = Vec::new();
     for method in able {
-        match method.prepare(model, options) {
+        match method.prepare_with(model, options, database) {
             Ok(prepared) => return Ok((prepared, refusals)),
             Err(refusal) => refusals.push(refusal),
         }

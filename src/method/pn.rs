@@ -14,6 +14,7 @@ use crate::method::triangles::{corner_weights, sum_of_three};
 use crate::method::unit::{direction, unit};
 use crate::method::vertices::{self, control_points};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::plan::Database;
 use crate::tessellation::Domain;
 
 /// The row of the table.
@@ -39,7 +40,7 @@ pub const METHOD: Method = Method {
     prepare,
 };
 
-fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let quads = Pass::new("pn_quads", Domain::Quads, 1, quad);
     let triangles = Pass::new("pn", Domain::Triangles, 1, triangle);
     Ok(vertices::by_vertices(model, [quads, triangles]))

@@ -18,6 +18,7 @@ use crate::method::triangles::{corner_weights, sum_of_three};
 use crate::method::unit::unit;
 use crate::method::vertices::{self, control_points};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, patches};
+use crate::plan::Database;
 use crate::tessellation::Domain;
 
 use hexagons::Hexagons;
@@ -40,7 +41,7 @@ pub const METHOD: Method = Method {
     prepare,
 };
 
-fn prepare(model: &Model, _options: MethodOptions) -> Result<Prepared> {
+fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let hexagons = Hexagons::new(model);
     let mut pass = Pass::new("qas", Domain::Triangles, 1, twin);
     for part in patches::parts(model) {

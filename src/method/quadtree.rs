@@ -10,6 +10,7 @@ mod irregular;
 mod plain;
 mod subjects;
 mod twin;
+mod view;
 
 use std::time::Instant;
 
@@ -22,13 +23,18 @@ use crate::mesh::topology::Topology;
 use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
-use crate::plan::{Catalogue, NodeKind, PackedPlans, PlanOptions, Ring};
+use crate::plan::database::Kind;
+use crate::plan::{Database, NodeKind, PackedPlans, Plan, PlanOptions, Ring};
 use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
 use crate::tessellation::Domain;
 
-use border::Borders;
+use border::{Borders, Given};
+#[cfg(feature = "host")]
+pub(crate) use twin::node_kind;
+
 use irregular::Irregular;
 use plain::is_turned_corner;
+use subjects::Planned;
 
 /// The row of the table.
 pub const METHOD: Method = Method {
@@ -89,7 +95,7 @@ enum Surroundings {
     Irregular(Part, Ring),
 }
 
-fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
+fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result<Prepared> {
     let options = options.plans.check()?;
     let started = Instant::now();
     let topology = model.topology();
@@ -118,8 +124,10 @@ fn prepare(model: &Model, options: MethodOptions) -> Result<Prepared> {
         index_bytes: size_of_val(&regular.controls[..]),
         ..PlanStatistics::default()
     };
-    let short = irregular(model, "quadtree", rings, options, &mut plans)?;
-    let long = irregular(model, "quadtree_long", long_rings, options, &mut plans)?;
+    let mut irregular =
+        |shader, rings| irregular(model, shader, rings, options, database, &mut plans);
+    let short = irregular("quadtree", rings)?;
+    let long = irregular("quadtree_long", long_rings)?;
     plans.build_seconds = started.elapsed().as_secs_f64();
     Ok(Prepared {
         plans: Some(plans),
@@ -134,69 +142,102 @@ fn irregular(
     shader: &'static str,
     rings: Vec<(Part, Ring)>,
     options: PlanOptions,
+    database: &Database,
     statistics: &mut PlanStatistics,
 ) -> Result<Pass> {
     let topology = model.topology();
     let mut pass = pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options);
     pass.cached = Some("quadtree_cached");
-    let mut catalogue = Catalogue::default();
-    let mut number = |(part, ring): (Part, Ring)| {
-        let plan = catalogue.number(ring.configuration.clone());
-        Irregular::new(part, ring, plan)
-    };
-    let patches: Vec<Irregular> = rings.into_iter().map(&mut number).collect();
+    let kinds = rings
+        .iter()
+        .map(|(_, ring)| (Kind::Inside, &ring.configuration));
+    let Planned { numbers, plans } = Planned::new(kinds, options, database)?;
+    let irregular = |((part, ring), plan)| Irregular::new(part, ring, plan);
+    let patches: Vec<Irregular> = rings.into_iter().zip(numbers).map(irregular).collect();
     let mut packed = PackedPlans::default();
-    let plans = catalogue.build(options)?;
     for plan in &plans {
-        packed.push(plan)?;
+        packed.push(plan.plan())?;
     }
     statistics.plans += plans.len();
-    statistics.stencils += plans.iter().map(|plan| plan.stencils.len()).sum::<usize>();
+    statistics.stencils += plans
+        .iter()
+        .map(|plan| plan.plan().stencils.len())
+        .sum::<usize>();
     for (count, kind) in statistics.nodes.iter_mut().zip(NODE_KINDS) {
         *count += packed.count(kind);
     }
     let inside_bytes = packed.quadtree_bytes();
-    let borders = Borders::new(topology, &patches, &plans, &mut packed, options)?;
+    let insides: Vec<&Plan> = plans.iter().map(|plan| plan.plan()).collect();
+    let given = Given {
+        topology,
+        patches: &patches,
+        plans: &insides,
+    };
+    let borders = Borders::new(given, &mut packed, options, database)?;
     for (patch, &border) in patches.iter().zip(&borders.numbers) {
         let turn = patch.turn(topology);
         let vertices = &patch.ring.vertices;
-        add(&mut pass, model, patch.part, turn, vertices).plan = border;
+        let record = add(&mut pass, model, patch.part, turn, vertices);
+        record.plan = border;
+        let ring = (vertices.len() as u32).min(abi::CONTROL_INVOCATIONS);
+        record.flags |= ring << abi::PATCH_RING_SHIFT;
+        if patch.ring.mirrored {
+            record.flags |= abi::PATCH_MIRRORED;
+        }
         pass.controls.extend(patch.order_words());
     }
-    let records = with_places(&mut pass, &borders);
-    pass.scratch_points = records.iter().map(slot_sizes).collect();
-    pass.scratch_products = records.iter().map(products).collect();
+    let (records, uses) = with_places(&mut pass, &borders);
+    let sums = records
+        .iter()
+        .map(|border| sums(border, &uses, &borders.ends));
+    (pass.scratch_points, pass.scratch_products) = sums.unzip();
     statistics.edge_plans += borders.edge_plans;
     statistics.vertex_plans += borders.vertex_plans;
     statistics.quadtree_bytes += inside_bytes;
-    statistics.border_bytes += packed.quadtree_bytes() - inside_bytes + size_of_val(&records[..]);
+    statistics.border_bytes += packed.quadtree_bytes() - inside_bytes
+        + size_of_val(&records[..])
+        + size_of_val(&uses[..])
+        + size_of_val(&borders.ends[..]);
     statistics.stencil_bytes += packed.stencil_bytes();
     statistics.add_points(&pass);
+    let products = packed.headers.iter().map(|header| {
+        let stencils = header.counts.iter().copied().max().unwrap_or(0);
+        u64::from(header.ring_size) * u64::from(stencils)
+    });
+    packed.rows.hold(products.max().unwrap_or(0));
+    let rows = packed.rows.view();
     pass.tables = vec![
         Table::of(&packed.nodes),
         Table::of(bytemuck::cast_slice::<u32, [u32; 2]>(&packed.points)),
-        Table::of(&packed.weights),
+        Table::of(rows.rows),
+        Table::of(rows.sets),
+        Table::of(rows.patterns),
+        Table::of(&uses),
+        Table::of(&borders.ends),
         Table::of(&records),
     ];
     Ok(pass)
 }
 
-/// The points of a patch's slot at each level.
-fn slot_sizes(border: &abi::Border) -> [u32; abi::HIGHEST_LEVEL as usize + 1] {
-    border.ends.map(|[.., last]| last)
-}
+/// A number for each level.
+type Levels<T> = [T; abi::HIGHEST_LEVEL as usize + 1];
 
-/// The products of a weight and a vertex in a patch's slot at each level. Of a corner's two points one is a normal, by two tangents.
-fn products(border: &abi::Border) -> [u64; abi::HIGHEST_LEVEL as usize + 1] {
-    border.ends.map(|ends| {
+/// The points of a patch's slot at each level, and the products of a weight and a vertex that these take. Of a corner's two points one is a normal, by two
+/// tangents.
+fn sums(border: &abi::Border, uses: &[abi::Use], ends: &[abi::Ends]) -> (Levels<u32>, Levels<u64>) {
+    let mut sums: (Levels<u32>, Levels<u64>) = Default::default();
+    for level in 0..sums.0.len() {
         let mut start = abi::USES + border.plain_count;
-        let of_use = |(number, end): (usize, u32)| {
+        let ends = view::ends_of(&ends[border.ends as usize], level);
+        for (number, end) in ends.into_iter().enumerate() {
             let stencils = end - std::mem::replace(&mut start, end);
             let tangents = u32::from(number >= 5 && stencils > 0);
-            u64::from(border.sizes[number]) * u64::from(stencils + tangents)
-        };
-        ends.into_iter().enumerate().map(of_use).sum()
-    })
+            let size = uses[border.uses[number] as usize].size;
+            sums.1[level] += u64::from(size) * u64::from(stencils + tangents);
+        }
+        sums.0[level] = start;
+    }
+    sums
 }
 
 impl PlanStatistics {
@@ -217,15 +258,18 @@ impl PlanStatistics {
 }
 
 /// Puts the borders' lists behind the lists of control vertices, and the borders right.
-fn with_places(pass: &mut Pass, borders: &Borders) -> Vec<abi::Border> {
+fn with_places(pass: &mut Pass, borders: &Borders) -> (Vec<abi::Border>, Vec<abi::Use>) {
     let start = pass.controls.len() as u32;
     pass.controls.extend_from_slice(&borders.places);
-    let moved = |border: &abi::Border| abi::Border {
-        rings: border.rings.map(|ring| ring + start),
+    let records = borders.records.iter().map(|border| abi::Border {
         plain: border.plain + start,
         ..*border
-    };
-    borders.records.iter().map(moved).collect()
+    });
+    let uses = borders.uses.iter().map(|used| abi::Use {
+        ring: used.ring + start,
+        ..*used
+    });
+    (records.collect(), uses.collect())
 }
 
 /// The flags of a regular patch's corners at which sums go along v first.
@@ -259,7 +303,7 @@ fn surroundings(topology: &Topology, part: Part) -> Surroundings {
     let quad = topology.face(part.face).len() == 4;
     let ring = match quad {
         true => Ring::of_quad(topology, part.face),
-        false => Ring::from_corner(topology, part.face, part.corner),
+        false => Ring::of_part(topology, part.face, part.corner),
     };
     Surroundings::Irregular(part, ring.expect("parts are the topology's own"))
 }

@@ -99,7 +99,7 @@ impl Pass {
         let bases = abi::Bases {
             controls: base(1),
             texture: base(2),
-            own: [3, 4, 5, 6, 7, 8, 9].map(base),
+            own: std::array::from_fn(|own| base(3 + own)),
         };
         (words, bases)
     }

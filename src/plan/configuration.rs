@@ -5,11 +5,12 @@
 //! Nothing farther out has a say (see `subdivision::refine`), except that under Chaikin's rule the next sharpness at an edge's far end
 //! does: it is part of what an edge brings along.
 
+use std::cmp::Ordering;
+
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::error::{Error, Misuse, Result};
-use crate::mesh::places::Places;
 use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::{FaceCorner, Topology};
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
@@ -31,37 +32,92 @@ pub struct Ring {
     pub faces: Vec<u32>,
     /// The corner of the first face at which the walk began: the plan's corner 0.
     pub start: u32,
+    /// Whether the walk went clockwise: the face is the mirror image of what the plan is for, with u and v exchanged.
+    pub mirrored: bool,
+}
+
+/// Where a walk begins, and which way it goes around.
+#[derive(Clone, Copy)]
+struct Start {
+    face: u32,
+    corner: u32,
+    mirrored: bool,
+}
+
+impl Start {
+    /// The `i`th corner of a face of `arity` corners that the walk meets.
+    fn corner(self, i: u32, arity: u32) -> u32 {
+        if self.mirrored {
+            (self.corner + arity - i % arity) % arity
+        } else {
+            (self.corner + i) % arity
+        }
+    }
+
+    /// The edge from that corner to the next.
+    fn edge(self, i: u32, arity: u32) -> u32 {
+        self.corner(i + u32::from(self.mirrored), arity)
+    }
 }
 
 impl Ring {
-    /// The ring of a quad, beginning at the corner whose configuration is the least, so that turned faces find the same plan. None where there is no
-    /// such quad.
+    /// The ring of a quad, beginning at the corner and going the way around whose configuration is the least, so that turned and mirrored faces find the
+    /// same plan. None where there is no such quad.
     pub fn of_quad(topology: &Topology, face: u32) -> Option<Ring> {
-        let corners = (0..4).map(|start| Ring::from_corner(topology, face, start));
-        let corners: Option<Vec<Ring>> = corners.collect();
-        Ring::least(corners?.into_iter()).filter(|_| topology.face(face).len() == 4)
+        if topology.face(face).len() != 4 {
+            return None;
+        }
+        let starts = least_starts(topology, face);
+        Ring::smooth(topology, face, starts[0]).or_else(|| {
+            let starts = starts.into_iter();
+            Ring::least(starts.map(|start| Ring::around(topology, start, 4)))
+        })
+    }
+
+    /// The ring of a quad around which all is smooth and quads, and no vertex met twice: its corners' valences tell all, and those of `start` are the least.
+    /// None of others.
+    fn smooth(topology: &Topology, face: u32, start: Start) -> Option<Ring> {
+        let corners = topology.face(face);
+        if !corners.iter().all(|&vertex| is_smooth(topology, vertex)) {
+            return None;
+        }
+        let valences = corners.iter().map(|&v| topology.vertex_faces(v).len());
+        let valences: usize = valences.sum();
+        let ring = Ring::around(topology, start, 4);
+        // Nine faces and sixteen vertices around four corners of four faces; a face and two vertices for each beyond.
+        let is_simple =
+            ring.faces.len() + 7 == valences && ring.vertices.len() + 16 == 2 * valences;
+        is_simple.then_some(ring)
+    }
+
+    /// The ring of the part of a face of any arity at corner `corner`, going the way around whose configuration is the least. The configuration of an n-gon
+    /// stands for its part at that corner. None where there is no such corner.
+    pub fn of_part(topology: &Topology, face: u32, corner: u32) -> Option<Ring> {
+        let arity = topology.face(face).len() as u32;
+        let starts = [false, true].map(|mirrored| Start {
+            face,
+            corner,
+            mirrored,
+        });
+        let starts = starts.into_iter().filter(|_| corner < arity);
+        Ring::least(starts.map(|start| Ring::around(topology, start, arity)))
     }
 
     /// The ring of a face of any arity, beginning at corner `start`. The configuration of an n-gon stands for its part at that corner. None where
     /// there is no such corner.
     pub fn from_corner(topology: &Topology, face: u32, start: u32) -> Option<Ring> {
         let arity = topology.face(face).len() as u32;
-        (start < arity).then(|| Ring::around(topology, face, start, arity))
+        (start < arity).then(|| Ring::unmirrored(topology, face, start, arity))
     }
 
     /// The ring of the edge: the faces around its ends. It begins in one of the faces on the edge, and the edge runs from vertex 0 to
     /// vertex 1, so that the configuration is the least. None where there is no such edge.
     pub fn of_edge(topology: &Topology, edge: u32) -> Option<Ring> {
         let rings = few(topology.edge_faces(edge)).iter().map(|&face| {
-            let [a, b] = topology.edge(edge).vertices;
-            let corner = topology.corner_of(face, a);
-            let runs_from_a = topology.face_edges(face)[corner as usize] == edge;
-            let start = if runs_from_a {
-                corner
-            } else {
-                topology.corner_of(face, b)
-            };
-            Ring::around(topology, face, start, 2)
+            let edges = topology.face_edges(face).iter();
+            let start = edges.into_iter().position(|&e| e == edge);
+            let start = start.expect("a face on the edge has it") as u32;
+            Ring::unmirrored(topology, face, start, 2)
         });
         Ring::least(rings)
     }
@@ -69,33 +125,46 @@ impl Ring {
     /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least. None of a vertex that no face has.
     pub fn of_vertex(topology: &Topology, vertex: u32) -> Option<Ring> {
         let corners = few(topology.vertex_faces(vertex)).iter();
-        Ring::least(corners.map(|at| Ring::around(topology, at.face, at.corner, 1)))
+        Ring::least(corners.map(|at| Ring::unmirrored(topology, at.face, at.corner, 1)))
     }
 
     fn least(rings: impl Iterator<Item = Ring>) -> Option<Ring> {
         rings.min_by(|a, b| a.configuration.cmp(&b.configuration))
     }
 
-    /// The faces around so many vertices of a face, beginning with its corner `start`.
-    fn around(topology: &Topology, face: u32, start: u32, corners: u32) -> Ring {
-        let faces = surrounding_faces(topology, face, start, corners);
+    fn unmirrored(topology: &Topology, face: u32, corner: u32, corners: u32) -> Ring {
+        let start = Start {
+            face,
+            corner,
+            mirrored: false,
+        };
+        Ring::around(topology, start, corners)
+    }
+
+    /// The faces around so many vertices of a face.
+    fn around(topology: &Topology, start: Start, corners: u32) -> Ring {
+        let faces = surrounding_faces(topology, start, corners);
         let mut walk = Walk::new(topology, faces.len());
         walk.options(topology.options());
         walk.words.push(faces.len() as u32);
-        for &(face, start) in &faces {
-            walk.face(face, start);
+        for &start in &faces {
+            walk.face(start);
         }
         walk.words.push(corners);
         for corner in 0..corners as usize {
-            walk.words
-                .push(topology.vertex_sharpness(walk.vertices[corner]).to_bits());
+            walk.words.push(
+                topology
+                    .vertex_sharpness(walk.vertices.all[corner])
+                    .to_bits(),
+            );
         }
         walk.edges(&faces, corners as usize);
         Ring {
-            vertices: walk.vertices,
+            vertices: walk.vertices.all,
             configuration: Configuration { words: walk.words },
-            faces: faces.iter().map(|&(face, _)| face).collect(),
-            start,
+            faces: faces.iter().map(|start| start.face).collect(),
+            start: start.corner,
+            mirrored: start.mirrored,
         }
     }
 }
@@ -109,31 +178,117 @@ fn few<T>(all: &[T]) -> &[T] {
     if all.len() <= FEW { all } else { &all[..1] }
 }
 
-/// Every face that has one of so many vertices of `face`, which comes first: around each corner in turn, beginning with `start`, counter-clockwise and then, where a boundary stopped the
-/// walk, clockwise; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
-fn surrounding_faces(
-    topology: &Topology,
-    face: u32,
-    start: u32,
-    corners: u32,
-) -> SmallVec<[(u32, u32); 16]> {
+/// Whether a word is a sharpness.
+fn is_float(word: u32) -> bool {
+    f32::from_bits(word) >= 0.0
+}
+
+/// Whether nothing is sharp at a vertex, and all its faces are quads. So it is inside and manifold: all else is made sharp.
+fn is_smooth(topology: &Topology, vertex: u32) -> bool {
+    let faces = topology.vertex_faces(vertex).iter();
+    !is_sharp(topology.vertex_sharpness(vertex))
+        && topology.sharp_edges(vertex).next().is_none()
+        && faces
+            .into_iter()
+            .all(|at| topology.face(at.face).len() == 4)
+}
+
+/// The starts in a quad at which what is seen at its corners and edges alone is the least: so few walks must be compared as a whole.
+fn least_starts(topology: &Topology, face: u32) -> SmallVec<[Start; 8]> {
+    let (vertices, edges) = (topology.face(face), topology.face_edges(face));
+    let corners: SmallVec<[[u32; 3]; 4]> = vertices
+        .iter()
+        .map(|&vertex| {
+            let faces = topology.vertex_faces(vertex).len() as u32;
+            let sharp = topology.sharp_edges(vertex).count() as u32;
+            [faces, sharp, topology.vertex_sharpness(vertex).to_bits()]
+        })
+        .collect();
+    let sharpness = |edge: u32| topology.edge(edges[edge as usize]).sharpness.to_bits();
+    let key = |start: Start| {
+        [0, 1, 2, 3].map(|i| {
+            let corner = corners[start.corner(i, 4) as usize];
+            (corner, sharpness(start.edge(i, 4)))
+        })
+    };
+    let mut least: SmallVec<[Start; 8]> = SmallVec::new();
+    for i in 0..8 {
+        let start = Start {
+            face,
+            corner: i % 4,
+            mirrored: i >= 4,
+        };
+        match least.first().map(|&known| key(start).cmp(&key(known))) {
+            Some(Ordering::Greater) => continue,
+            Some(Ordering::Less) => least.clear(),
+            _ => {}
+        }
+        least.push(start);
+    }
+    least
+}
+
+/// Lists up to this length are searched from their beginning; longer ones have a table.
+const SHORT: usize = 32;
+
+/// Numbers, each once, in the order in which they come.
+#[derive(Default)]
+struct Once {
+    all: Vec<u32>,
+    /// Their places, once there are many.
+    places: FxHashMap<u32, u32>,
+}
+
+impl Once {
+    /// The place of a number, if it is there.
+    fn find(&self, number: u32) -> Option<u32> {
+        if self.all.len() <= SHORT {
+            let place = self.all.iter().position(|&known| known == number);
+            return place.map(|place| place as u32);
+        }
+        self.places.get(&number).copied()
+    }
+
+    /// Its place, the next one if it is new; and whether it is.
+    fn place(&mut self, number: u32) -> (u32, bool) {
+        if let Some(place) = self.find(number) {
+            return (place, false);
+        }
+        let place = self.all.len() as u32;
+        self.all.push(number);
+        if self.all.len() == SHORT + 1 {
+            self.places = self.all.iter().copied().zip(0..).collect();
+        } else if self.all.len() > SHORT {
+            self.places.insert(number, place);
+        }
+        (place, true)
+    }
+}
+
+/// Every face that has one of so many vertices of the first one: around each corner in turn, counter-clockwise and then, where a boundary stopped the
+/// walk, clockwise, or the other way around; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
+fn surrounding_faces(topology: &Topology, start: Start, corners: u32) -> SmallVec<[Start; 16]> {
+    let Start { face, mirrored, .. } = start;
     let arity = topology.face(face).len() as u32;
-    let mut found = SmallVec::from_slice(&[(face, start)]);
-    let mut known = Places::default();
-    known.add(face);
+    let mut found = SmallVec::from_slice(&[start]);
+    let mut known = Once::default();
+    known.place(face);
     let mut add = |next: u32, vertex: u32| {
-        if known.add(next) {
-            found.push((next, topology.corner_of(next, vertex)));
+        if known.place(next).1 {
+            let corner = topology.face(next).iter().position(|&v| v == vertex);
+            found.push(Start {
+                face: next,
+                corner: corner.expect("the walk stays at the vertex") as u32,
+                mirrored,
+            });
         }
     };
-    'corners: for corner in (0..corners).map(|i| (start + i) % arity) {
-        let vertex = topology.face(face)[corner as usize];
+    'corners: for i in 0..corners {
+        let vertex = topology.face(face)[start.corner(i, arity) as usize];
         let edges = topology.face_edges(face);
         let around = topology.vertex_faces(vertex);
-        for edge in [
-            edges[((corner + arity - 1) % arity) as usize],
-            edges[corner as usize],
-        ] {
+        for i in [i + arity - 1, i] {
+            let edge = edges[start.edge(i, arity) as usize];
             let mut met = 1;
             for (next, _) in topology.walk(vertex, face, edge) {
                 add(next, vertex);
@@ -170,19 +325,19 @@ fn apart<'a>(
 /// Writes down a ring and numbers its vertices on the way.
 struct Walk<'a> {
     topology: &'a Topology,
-    numbers: FxHashMap<u32, u32>,
-    vertices: Vec<u32>,
+    vertices: Once,
     words: Vec<u32>,
 }
 
 impl Walk<'_> {
     /// Nothing yet, with room for what a ring of so many quads takes.
     fn new(topology: &Topology, faces: usize) -> Walk<'_> {
-        let vertices = 2 * faces;
         Walk {
             topology,
-            numbers: FxHashMap::with_capacity_and_hasher(vertices, Default::default()),
-            vertices: Vec::with_capacity(vertices),
+            vertices: Once {
+                all: Vec::with_capacity(2 * faces),
+                ..Once::default()
+            },
             words: Vec::with_capacity(6 + 5 * faces + 5),
         }
     }
@@ -194,33 +349,33 @@ impl Walk<'_> {
     }
 
     fn number(&mut self, vertex: u32) -> u32 {
-        *self.numbers.entry(vertex).or_insert_with(|| {
-            self.vertices.push(vertex);
-            self.vertices.len() as u32 - 1
-        })
+        self.vertices.place(vertex).0
     }
 
-    fn face(&mut self, face: u32, start: u32) {
-        let vertices = self.topology.face(face);
-        self.words.push(vertices.len() as u32);
-        for i in 0..vertices.len() {
-            let number = self.number(vertices[(start as usize + i) % vertices.len()]);
+    fn face(&mut self, start: Start) {
+        let vertices = self.topology.face(start.face);
+        let arity = vertices.len() as u32;
+        self.words.push(arity);
+        for i in 0..arity {
+            let number = self.number(vertices[start.corner(i, arity) as usize]);
             self.words.push(number);
         }
     }
 
     /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
-    fn edges(&mut self, faces: &[(u32, u32)], corners: usize) {
-        let mut seen = Places::default();
-        for &(face, start) in faces {
-            let edges = self.topology.face_edges(face);
-            for &number in (0..edges.len()).map(|i| &edges[(start as usize + i) % edges.len()]) {
+    fn edges(&mut self, faces: &[Start], corners: usize) {
+        let mut seen = Once::default();
+        for start in faces {
+            let edges = self.topology.face_edges(start.face);
+            let arity = edges.len() as u32;
+            for &number in (0..arity).map(|i| &edges[start.edge(i, arity) as usize]) {
                 let edge = self.topology.edge(number);
                 if !is_sharp(edge.sharpness) {
                     continue;
                 }
-                let [a, b] = edge.vertices.map(|vertex| self.numbers[&vertex]);
-                if (a.min(b) as usize) < corners && seen.add(number) {
+                let ends = edge.vertices.map(|vertex| self.vertices.find(vertex));
+                let [a, b] = ends.map(|end| end.expect("the faces have their edges' ends"));
+                if (a.min(b) as usize) < corners && seen.place(number).1 {
                     let ends = if a < b { [a, b] } else { [b, a] };
                     let next = if a < b {
                         edge.next
@@ -313,6 +468,60 @@ impl Configuration {
     /// The number of corners of face 0.
     pub(super) fn arity(&self) -> u32 {
         self.words[2]
+    }
+
+    /// The configuration that [`words`](Self::words) gave, from where they were stored; None where they tell none.
+    pub(super) fn from_words(words: &[u32]) -> Option<Configuration> {
+        let (&[flags, faces], mut rest) = words.split_first_chunk()?;
+        let mut vertices = 0;
+        for _ in 0..faces {
+            let (&arity, behind) = rest.split_first()?;
+            let (face, behind) = behind.split_at_checked(arity as usize)?;
+            for &vertex in face {
+                if vertex > vertices {
+                    return None;
+                }
+                vertices = vertices.max(vertex + 1);
+            }
+            rest = behind;
+            if arity < 3 {
+                return None;
+            }
+        }
+        let (&corners, rest) = rest.split_first()?;
+        let (sharpness, edges) = rest.split_at_checked(corners as usize)?;
+        let edges = edges.chunks(5);
+        let mut floats = sharpness.iter().copied();
+        let sound = flags <= 3
+            && (1..=*words.get(2)?).contains(&corners)
+            && floats.all(is_float)
+            && edges.into_iter().all(|edge| match *edge {
+                [a, b, ref floats @ ..] if floats.len() == 3 => {
+                    a < b && b < vertices && floats.iter().copied().all(is_float)
+                }
+                _ => false,
+            });
+        sound.then(|| Configuration {
+            words: words.to_vec(),
+        })
+    }
+
+    /// How many faces it lists.
+    pub(super) fn face_count(&self) -> u32 {
+        self.words[1]
+    }
+
+    /// How many vertices these have.
+    pub(super) fn vertex_count(&self) -> u32 {
+        let mut at = 2;
+        let mut vertices = 0;
+        for _ in 0..self.words[1] {
+            let arity = self.words[at] as usize;
+            let face = &self.words[at + 1..=at + arity];
+            vertices = face.iter().fold(vertices, |most, &v| most.max(v + 1));
+            at += 1 + arity;
+        }
+        vertices
     }
 
     /// The words, for storage.

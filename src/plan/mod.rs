@@ -2,11 +2,12 @@
 
 mod base;
 mod builder;
-mod catalogue;
 mod configuration;
+pub mod database;
 mod edge;
 mod level;
 mod nearby;
+mod packed_rows;
 mod packing;
 mod rows;
 mod span;
@@ -16,9 +17,10 @@ mod vertex;
 mod walk;
 
 pub use builder::{Plan, PlanOptions, Stencil};
-pub use catalogue::Catalogue;
 pub use configuration::{Configuration, Ring};
+pub use database::Database;
 pub use edge::{EdgeKind, EdgePlan};
+pub use packed_rows::{PackedRows, Row, RowsView};
 pub use packing::{PackedPlans, Plans};
 pub use strip::{Crease, Stretch, Strip};
 pub use tree::{Node, NodeKind};

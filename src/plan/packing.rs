@@ -1,8 +1,11 @@
 //! Plans as the bytes that the shaders read.
 
+use rustc_hash::FxHashMap;
+
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::plan::builder::Plan;
+use crate::plan::packed_rows::{PackedRows, RowsView};
 use crate::plan::strip::Strip;
 use crate::plan::tree::{Node, NodeKind};
 
@@ -11,8 +14,8 @@ use crate::plan::tree::{Node, NodeKind};
 pub struct PlanHeader {
     /// Vertices of the 1-ring.
     pub ring_size: u32,
-    /// Where its weights begin: for each stencil the corner of [`Stencil::corner`](crate::plan::Stencil::corner), and one a vertex of the ring.
-    pub weights: u32,
+    /// The number of its first stencil among all.
+    pub rows: u32,
     /// Its root.
     pub root: u32,
     /// Its deepest level.
@@ -47,26 +50,30 @@ pub struct PackedPlans {
     pub nodes: Vec<abi::Node>,
     /// The nodes' points: numbers of stencils, sixteen a B-spline, two 16-bit halves a word, the lower first.
     pub points: Vec<u32>,
-    /// The stencils' weights, each after a word for its origin, and behind those of each plan its tangents near corners.
-    pub weights: Vec<f32>,
+    /// The stencils, and behind those of each plan its tangents near corners.
+    pub rows: PackedRows,
     /// For each plan the number, among its stencils, of the first of two tangents near each corner; [`abi::NO_TANGENTS`] without any.
     pub nearby: Vec<[u32; 4]>,
+    /// The roots of strips that are there, by their nodes.
+    known_strips: FxHashMap<Box<[u32]>, u32>,
+    /// Where lists begin that are there.
+    known_lists: FxHashMap<Box<[u32]>, u32>,
 }
 
 impl PackedPlans {
     /// Appends a plan.
     ///
     /// # Errors
-    /// [`Misuse::PlanTooLarge`] when the plan has more than 65,536 stencils: points are numbered in 16 bits.
+    /// [`Misuse::PlanTooLarge`] when the plan has more than 65,535 stencils: points are numbered in 16 bits.
     pub fn push(&mut self, plan: &Plan) -> Result<()> {
-        let (points, greatest) = (plan.stencils.len(), 1 << 16);
+        let (points, greatest) = (plan.stencils.len(), usize::from(u16::MAX));
         if points > greatest {
             return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
         }
         let counts = plan.level_counts();
         self.headers.push(PlanHeader {
             ring_size: plan.ring_size as u32,
-            weights: self.weights.len() as u32,
+            rows: self.rows.len() as u32,
             root: self.nodes.len() as u32,
             max_level: plan.max_level,
             counts: std::array::from_fn(|level| counts[level.min(counts.len() - 1)] as u32),
@@ -83,8 +90,7 @@ impl PackedPlans {
             .map(|stencil| (&stencil.weights, stencil.corner));
         for (row, corner) in rows.chain(tangents.map(|row| (row, None))) {
             let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
-            self.weights.push(f32::from_bits(corner));
-            self.weights.extend(row.iter().map(|&weight| weight as f32));
+            self.rows.push(row, corner)?;
         }
         let mut next = plan.stencils.len() as u32;
         self.nearby.push(plan.nearby.each_ref().map(|tangents| {
@@ -110,13 +116,22 @@ impl PackedPlans {
         self.nodes.len() as u32 - 1
     }
 
-    /// Appends the tree of an edge that a face evaluates with points of its own plan; returns its root.
+    /// Appends the tree of an edge that a face evaluates with points of its own plan, unless it is there; returns its root.
     pub fn push_strip(&mut self, plan: &Plan, strip: &Strip) -> u32 {
-        let root = self.nodes.len() as u32;
-        for node in strip.nodes() {
-            let packed = self.pack(&node, plan, root);
-            self.nodes.push(packed);
+        let nodes = strip.nodes();
+        let nodes: Vec<abi::Node> = nodes.iter().map(|node| self.pack(node, plan, 0)).collect();
+        let words = bytemuck::cast_slice(&nodes);
+        if let Some(&known) = self.known_strips.get(words) {
+            return known;
         }
+        let root = self.nodes.len() as u32;
+        self.known_strips.insert(words.into(), root);
+        self.nodes.extend(nodes.into_iter().map(|mut node| {
+            if node.kind & 15 == abi::NODE_INTERNAL {
+                node.points += root;
+            }
+            node
+        }));
         root
     }
 
@@ -159,9 +174,13 @@ impl PackedPlans {
         }
     }
 
-    /// Appends a list of points; returns where it begins.
+    /// Appends a list of points that is not there yet; returns where it begins.
     fn list(&mut self, points: &[u32]) -> u32 {
+        if let Some(&known) = self.known_lists.get(points) {
+            return known;
+        }
         let start = 2 * self.points.len() as u32;
+        self.known_lists.insert(points.into(), start);
         self.points.extend(
             points
                 .chunks(2)
@@ -175,7 +194,7 @@ impl PackedPlans {
         Plans {
             nodes: &self.nodes,
             points: &self.points,
-            weights: &self.weights,
+            rows: self.rows.view(),
         }
     }
 
@@ -194,7 +213,7 @@ impl PackedPlans {
 
     /// The bytes of the stencils.
     pub fn stencil_bytes(&self) -> usize {
-        size_of_val(&self.weights[..])
+        self.rows.bytes()
     }
 }
 
@@ -206,7 +225,7 @@ pub struct Plans<'a> {
     /// As in [`PackedPlans`].
     pub points: &'a [u32],
     /// As in [`PackedPlans`].
-    pub weights: &'a [f32],
+    pub rows: RowsView<'a>,
 }
 
 impl Plans<'_> {

@@ -77,15 +77,25 @@ impl Stretch {
 
     /// The same seen from the edge's other side and end.
     pub(super) fn reversed(&self) -> Stretch {
-        let turned = |[outside, on, inside]: [[u32; 4]; 3]| {
-            [inside, on, outside].map(|mut row| {
+        let turned = |[outside, on, inside]: [[u32; 4]; 3]| [inside, on, outside];
+        let mirrored = self.mirrored();
+        Stretch {
+            points: mirrored.points.map(turned),
+            ..mirrored
+        }
+    }
+
+    /// That of the face's mirror image: from the edge's other end, with the same rows inside and outside.
+    fn mirrored(&self) -> Stretch {
+        let backwards = |rows: [[u32; 4]; 3]| {
+            rows.map(|mut row| {
                 row.reverse();
                 row
             })
         };
         Stretch {
             at: (1 << self.depth) - 1 - self.at,
-            points: self.points.map(turned),
+            points: self.points.map(backwards),
             crease: match self.crease {
                 Crease::Across(end, sharpness) => Crease::Across(1 - end, sharpness),
                 crease => crease,
@@ -100,6 +110,11 @@ impl Stretch {
 pub struct Strip(Vec<Stretch>);
 
 impl Strip {
+    /// Of stretches in the order along the edge.
+    pub(super) fn from_stretches(stretches: Vec<Stretch>) -> Strip {
+        Strip(stretches)
+    }
+
     /// The cells of a tree along edge 0..=3, which runs from the corner of this number to the next. None where the face is one cell: its points are
     /// relative to nothing that both sides of the edge have.
     pub(super) fn of(nodes: &[Node], edge: u32) -> Option<Strip> {
@@ -153,6 +168,11 @@ impl Strip {
     /// The same seen from the edge's other side and end.
     pub fn reversed(&self) -> Strip {
         Strip(self.0.iter().rev().map(Stretch::reversed).collect())
+    }
+
+    /// That of the face's mirror image, along the edge's direction there.
+    pub fn mirrored(&self) -> Strip {
+        Strip(self.0.iter().rev().map(Stretch::mirrored).collect())
     }
 }
 

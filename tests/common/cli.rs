@@ -6,6 +6,8 @@ use std::process::{Command, Output};
 pub fn hullform(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hullform"));
     command.args(arguments).env_remove("RUST_LOG");
+    // Plans are kept from run to run, but not among the user's.
+    command.env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"));
     command
 }
 

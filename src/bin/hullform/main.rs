@@ -6,6 +6,7 @@ mod bench;
 mod camera;
 mod capture;
 mod compare;
+mod db;
 mod devices;
 mod drawing;
 mod eye;
@@ -59,6 +60,8 @@ enum Command {
     Bench(bench::Arguments),
     /// Tell how the faces of a model are planned
     Plan(plan::Arguments),
+    /// Look after the file that plans are kept in
+    Db(db::Arguments),
     /// List the Vulkan devices and how they suit us
     Devices,
     /// Find out whether a driver keeps the rules that we rely on, and whether we keep our own
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     interrupt::listen();
     let global = &arguments.global;
+    db::remember(global);
     let result = match &arguments.command {
         Command::Render(arguments) => {
             model::named(arguments.model.as_deref(), render::run(arguments, global))
@@ -86,6 +90,7 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => {
             model::named(Some(&arguments.model), plan::run(arguments, global))
         }
+        Command::Db(arguments) => db::run(arguments, global),
         Command::Devices => devices::run(global),
         Command::Verify(arguments) => verify::run(arguments, global),
         Command::View(arguments) => view::run(arguments, global),

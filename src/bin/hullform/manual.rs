@@ -65,15 +65,21 @@ fn table() -> String {
         });
         of.entry(number).or_default().push(whose);
     };
-    let subcommands: Vec<&Command> = command.get_subcommands().collect();
-    for subcommand in &subcommands {
+    let mut subcommands: Vec<(String, &Command)> = Vec::new();
+    for subcommand in command.get_subcommands() {
+        let name = subcommand.get_name();
+        subcommands.push((name.into(), subcommand));
+        let nested = subcommand.get_subcommands();
+        subcommands.extend(nested.map(|nested| (format!("{name} {}", nested.get_name()), nested)));
+    }
+    for (name, subcommand) in &subcommands {
         let inherited = |arg: &&Arg| arg.is_global_set();
         for arg in subcommand
             .get_arguments()
             .filter(visible)
             .filter(|arg| !inherited(arg))
         {
-            add(arg, format!("`{}`", subcommand.get_name()));
+            add(arg, format!("`{name}`"));
         }
     }
     for arg in command.get_arguments().filter(visible) {

@@ -5,12 +5,13 @@ mod steps;
 
 use crate::adaptive::Adaptive;
 use crate::camera::Camera;
+use crate::db::database;
 use clap::{Args, ValueEnum};
 use hullform::Error;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{
     METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method, method_for,
-    prepare_by_default,
+    prepare_by_default_with,
 };
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -46,6 +47,9 @@ pub struct Global {
     /// Who computes the points that some methods derive from the control vertices, with the same bits
     #[arg(long, global = true, value_name = "WHO", default_value = "host")]
     pub points: Points,
+    /// File that plans are kept in from run to run, or none [default: hullform/plans.db in the user's cache]
+    #[arg(long, global = true, value_name = "PATH|none")]
+    pub db: Option<PathBuf>,
 }
 
 impl Global {
@@ -221,8 +225,11 @@ impl Chosen {
     /// Prepares a model; with the reasons why methods that come before the one that did it refused.
     pub fn prepare(&self, model: &Model) -> hullform::Result<(Prepared, Vec<Error>)> {
         match self.replaceable {
-            true => prepare_by_default(model, self.options),
-            false => Ok((self.method.prepare(model, self.options)?, Vec::new())),
+            true => prepare_by_default_with(model, self.options, database()?),
+            false => {
+                let prepared = self.method.prepare_with(model, self.options, database()?)?;
+                Ok((prepared, Vec::new()))
+            }
         }
     }
 }
@@ -391,7 +398,7 @@ pub fn share(text: &str) -> Result<f32, &'static str> {
     }
 }
 
-fn bytes(text: &str) -> Result<u64, &'static str> {
+pub fn bytes(text: &str) -> Result<u64, &'static str> {
     let units = [("KiB", 1 << 10), ("MiB", 1 << 20)];
     let stripped = units
         .iter()

@@ -1,13 +1,15 @@
 //! `hullform plan`: how the faces of a model are planned.
 
+use crate::db::database;
 use crate::options::{self, Global};
 use crate::{model, print, print_json, progress};
 use clap::Args;
 use hullform::mesh::{ControlMesh, Model, replicated};
-use hullform::method::method;
-use hullform::plan::PlanOptions;
+use hullform::method::{Prepared, method};
+use hullform::plan::{PlanOptions, Ring};
 use hullform::{Error, Result};
 use serde_json::{Map, Value, json};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -81,6 +83,18 @@ fn as_text(facts: &Map<String, Value>) -> String {
     facts.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// How many plans there would be of insides, if a face could not be turned or mirrored to have that of another.
+fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
+    let offsets = model.mesh().ptex_offsets();
+    let planned = prepared.passes.iter().filter(|pass| pass.cached.is_some());
+    let rings = planned.flat_map(|pass| &pass.patches).filter_map(|patch| {
+        let face = offsets.partition_point(|&first| first <= patch.ptex) - 1;
+        Ring::from_corner(model.topology(), face as u32, patch.ptex - offsets[face])
+    });
+    let all: HashSet<_> = rings.map(|ring| ring.configuration).collect();
+    all.len()
+}
+
 /// What there is to tell about the plans of `mesh`, in the order to tell it.
 fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<String, Value>> {
     let options = PlanOptions {
@@ -90,9 +104,10 @@ fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<Stri
     let started = Instant::now();
     let model = Model::new(mesh);
     let connected = started.elapsed().as_secs_f64();
-    let prepared = method("quadtree")?.prepare(&model, options)?;
+    let prepared = method("quadtree")?.prepare_with(&model, options, database()?)?;
     let seconds = started.elapsed().as_secs_f64();
     let mesh = model.mesh();
+    let without_sharing = plans_without_sharing(&model, &prepared);
     let plans = prepared.plans.unwrap_or_default();
     let [internal, regular, boundary, crease, terminal, extraordinary] = plans.nodes;
     let levels = (0..=options.max_level).map(|level| {
@@ -108,6 +123,7 @@ fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<Stri
         "regular": plans.regular,
         "irregular": plans.irregular,
         "plans": plans.plans,
+        "plans_without_sharing": without_sharing,
         "edge_plans": plans.edge_plans,
         "vertex_plans": plans.vertex_plans,
         "nodes": {

@@ -10,9 +10,8 @@ use crate::error::Result;
 use crate::mesh::{ControlMesh, Model, Scheme};
 use crate::method::{
     Controls, Method, MethodOptions, Pass, Prepared, Reproduces, TableNormals, is_on_hexagon,
-    to_ptex,
+    node_kind, to_ptex,
 };
-use crate::plan::{Plans, walk};
 use crate::subdivision::{LimitSurface, is_cusp, is_unpromised, vertex_limit};
 
 /// What a vertex is evaluated by.
@@ -122,19 +121,8 @@ fn kind_of(pass: &Pass, vertex: &Captured) -> Kind {
         [true, false] | [false, true] => return Kind::Edge,
         [false, false] => {}
     }
-    let [nodes, points, weights, borders, ..] = &pass.tables[..] else {
-        return Kind::Node(abi::NODE_REGULAR);
-    };
-    let plans = Plans {
-        nodes: bytemuck::cast_slice(nodes),
-        points,
-        weights: bytemuck::cast_slice(weights),
-    };
-    let borders: &[abi::Border] = bytemuck::cast_slice(borders);
-    let border = &borders[pass.patches[vertex.patch_number as usize].plan as usize];
-    // The first use of a border is the inside.
-    let leaf = walk(plans, border.roots[0], Vec2::from(vertex.uv));
-    Kind::Node(leaf.expect("borders have the roots of packed trees").kind)
+    let kind = node_kind(pass, vertex.patch_number as usize, vertex.uv.into());
+    Kind::Node(kind.unwrap_or(abi::NODE_REGULAR))
 }
 
 /// Whether one of the six places of a triangle has one normal in closed form for all its faces: not at a cusp, and not where the truth too only

@@ -5,18 +5,21 @@
 //! whose sums are symmetric give the same bits to all sides by themselves, to patches without plans as well. And where the plans of both faces on an
 //! edge have the same points along it, each evaluates it with its own (see `agreement.rs`).
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use bytemuck::{AnyBitPattern, NoUninit};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+use smallvec::{SmallVec, smallvec};
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Misuse, Result};
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
 use crate::method::quadtree::agreement::agreed_edges;
 use crate::method::quadtree::irregular::Irregular;
 use crate::method::quadtree::plain::{edge_rows, is_turned_corner, vertex_rows};
 use crate::method::quadtree::subjects::{Line, Point, Shared};
-use crate::plan::{PackedPlans, Plan, PlanOptions, Ring, Side};
-use crate::subdivision::{is_plain_edge, is_plain_vertex};
+use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side};
+use crate::subdivision::is_plain_vertex;
 
 /// The levels that a patch can be drawn at.
 const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
@@ -25,11 +28,26 @@ const USES: usize = abi::USES as usize;
 /// An edge of which the patch has half.
 const HALVES: u32 = abi::USE_FIRST_HALF | abi::USE_SECOND_HALF;
 
+/// What borders are found for.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    /// The mesh.
+    pub topology: &'a Topology,
+    /// Its irregular patches.
+    pub patches: &'a [Irregular],
+    /// The plans of their insides.
+    pub plans: &'a [&'a Plan],
+}
+
 /// Borders, each once.
 #[derive(Default)]
 pub struct Borders {
     /// The borders.
     pub records: Vec<abi::Border>,
+    /// What they are made of.
+    pub uses: Vec<abi::Use>,
+    /// Where the points of slots end.
+    pub ends: Vec<abi::Ends>,
     /// Of each irregular patch: the number of its border.
     pub numbers: Vec<u32>,
     /// Which vertices of a patch's ring take part in an edge, vertex or plain points: lists one behind the other.
@@ -78,29 +96,39 @@ fn points(topology: &Topology, part: Part, turn: u32) -> [Option<Point>; 4] {
 impl Borders {
     /// Finds the borders of irregular patches, whose plans are packed, and packs those of edges and vertices.
     pub fn new(
-        topology: &Topology,
-        patches: &[Irregular],
-        plans: &[Plan],
+        given: Given<'_>,
         packed: &mut PackedPlans,
         options: PlanOptions,
+        database: &Database,
     ) -> Result<Borders> {
-        let agreed = agreed_edges(topology, patches, plans);
+        let Given {
+            topology,
+            patches,
+            plans,
+        } = given;
+        let vertices = 0..topology.vertex_count() as u32;
+        let plain: Vec<bool> = vertices
+            .into_par_iter()
+            .map(|vertex| is_plain_vertex(topology, vertex))
+            .collect();
+        let agreed = agreed_edges(topology, &plain, patches, plans);
+        let is_settled = |edge: u32| {
+            let ends = topology.edge(edge).vertices;
+            agreed[edge as usize] || ends.iter().all(|&vertex| plain[vertex as usize])
+        };
         let lines = patches.iter().flat_map(|patch| {
             let lines = lines(topology, patch.part, patch.turn(topology));
             lines.into_iter().map(|(line, ..)| line)
         });
-        let lines = lines.filter(|&line| {
-            !matches!(line, Line::Edge(edge) if is_plain_edge(topology, edge) || agreed.contains(&edge))
-        });
-        let lines = Shared::new(topology, lines, packed, options)?;
+        let lines = lines.filter(|&line| !matches!(line, Line::Edge(edge) if is_settled(edge)));
+        let lines = Shared::new(topology, lines, packed, options, database)?;
         let vertices = patches.iter().flat_map(|patch| {
             let points = points(topology, patch.part, patch.turn(topology));
             points.into_iter().flatten()
         });
-        let vertices = vertices.filter(
-            |&point| !matches!(point, Point::Vertex(vertex) if is_plain_vertex(topology, vertex)),
-        );
-        let vertices = Shared::new(topology, vertices, packed, options)?;
+        let vertices = vertices
+            .filter(|&point| !matches!(point, Point::Vertex(vertex) if plain[vertex as usize]));
+        let vertices = Shared::new(topology, vertices, packed, options, database)?;
         let mut builder = Builder {
             topology,
             plans,
@@ -111,6 +139,8 @@ impl Borders {
             packed,
             lists: FxHashMap::default(),
             nodes: FxHashMap::default(),
+            uses: FxHashMap::default(),
+            ends: FxHashMap::default(),
             borders: FxHashMap::default(),
             found: Borders {
                 edge_plans: lines.plans.len(),
@@ -119,8 +149,9 @@ impl Borders {
             },
         };
         for patch in patches {
-            let border = builder.border(patch);
-            let number = builder.number(border);
+            let border = builder.border(patch)?;
+            let records = &mut builder.found.records;
+            let number = numbered(&mut builder.borders, records, border);
             builder.found.numbers.push(number);
         }
         Ok(builder.found)
@@ -131,36 +162,62 @@ impl Borders {
 struct Builder<'a> {
     topology: &'a Topology,
     /// The plans of the insides.
-    plans: &'a [Plan],
-    agreed: &'a FxHashSet<u32>,
-    /// Roots of the trees of agreed edges, by plan, edge, and whether it is flipped.
-    strips: FxHashMap<(u32, u32, bool), u32>,
+    plans: &'a [&'a Plan],
+    agreed: &'a [bool],
+    /// Roots of the trees of agreed edges, by plan, edge, whether the patch is mirrored, and whether the edge is flipped.
+    strips: FxHashMap<(u32, u32, bool, bool), u32>,
     lines: &'a Shared<Line>,
     vertices: &'a Shared<Point>,
     packed: &'a mut PackedPlans,
     /// Where lists of places begin.
-    lists: FxHashMap<Vec<u32>, u32>,
+    lists: FxHashMap<List, u32>,
     /// Nodes of plain edges and vertices by their points.
     nodes: FxHashMap<[u32; 16], u32>,
-    borders: FxHashMap<Vec<u32>, u32>,
+    uses: FxHashMap<[u32; 5], u32>,
+    ends: FxHashMap<[u32; 55], u32>,
+    borders: FxHashMap<[u32; 12], u32>,
     found: Borders,
+}
+
+/// The number of a record, which is appended if it is not known.
+fn numbered<T: NoUninit + AnyBitPattern, const N: usize>(
+    known: &mut FxHashMap<[u32; N], u32>,
+    records: &mut Vec<T>,
+    record: T,
+) -> u32 {
+    *known.entry(bytemuck::cast(record)).or_insert_with(|| {
+        records.push(record);
+        records.len() as u32 - 1
+    })
 }
 
 /// The plain vertices of a patch as they are met, as places in its ring.
 struct Plain<'a> {
-    ring: FxHashMap<u32, u32>,
-    places: &'a mut Vec<u32>,
+    patch: &'a Irregular,
+    /// The plain vertices, as places.
+    places: &'a mut List,
+    /// Their numbers by place, once they are met.
+    numbers: List,
 }
 
+/// Places in a ring.
+type List = SmallVec<[u32; 32]>;
+
 impl Plain<'_> {
+    fn place(&self, vertex: u32) -> u32 {
+        let place = self.patch.place(vertex);
+        u32::from(place.expect("what a patch shares is in its ring"))
+    }
+
     /// The number, among the plain points, of a vertex of the mesh.
     fn point(&mut self, vertex: u32) -> u32 {
-        let place = self.ring[&vertex];
-        let known = self.places.iter().position(|&known| known == place);
-        known.unwrap_or_else(|| {
+        let place = self.place(vertex);
+        let number = &mut self.numbers[place as usize];
+        if *number == u32::MAX {
+            *number = self.places.len() as u32;
             self.places.push(place);
-            self.places.len() - 1
-        }) as u32
+        }
+        *number
     }
 }
 
@@ -175,79 +232,91 @@ fn side_flags(side: Side, creased: bool) -> u32 {
             .map_or(abi::USE_CUSP, |pair| pair << abi::USE_SIDE_SHIFT)
 }
 
-/// Where in a slot the points of each plan end, at each level: there is a head for each use, then the plain points, then those of the plans.
-fn ends(plain: u32, counts: &[[u32; LEVELS]; USES]) -> [[u32; USES]; LEVELS] {
-    std::array::from_fn(|level| {
+/// Where in a slot the points of each use end, at each level: there is a head for each use, then the plain points, then those of the plans.
+///
+/// # Errors
+/// [`Misuse::PlanTooLarge`] when 16 bits do not hold them.
+fn ends(plain: u32, counts: &[[u32; LEVELS]; USES]) -> Result<abi::Ends> {
+    let mut ends = abi::Ends::default();
+    for (level, words) in ends.levels.iter_mut().enumerate() {
         let mut end = abi::USES + plain;
-        counts.map(|counts| {
+        for (number, counts) in counts.iter().enumerate() {
             end += counts[level];
-            end
-        })
-    })
+            words[number / 2] |= end << (16 * (number % 2));
+        }
+        let (points, greatest) = (end as usize, usize::from(u16::MAX));
+        if points > greatest {
+            return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
+        }
+    }
+    Ok(ends)
 }
 
 impl Builder<'_> {
-    fn border(&mut self, patch: &Irregular) -> abi::Border {
+    fn border(&mut self, patch: &Irregular) -> Result<abi::Border> {
         let (topology, turn) = (self.topology, patch.turn(self.topology));
-        let ring = (0..).zip(&patch.ring.vertices);
-        let ring: FxHashMap<u32, u32> = ring.map(|(place, &vertex)| (vertex, place)).collect();
-        let mut border = abi::Border::default();
+        let mut uses = [abi::Use::default(); USES];
         let mut counts = [[0; LEVELS]; USES];
-        let [inside @ .., _] = self.plan(&mut border, 0, patch.plan);
+        let [inside @ .., _] = self.plan(&mut uses[0], patch.plan);
         counts[0] = inside;
-        border.nearby = self.packed.nearby[patch.plan as usize];
-        let mut places = Vec::new();
+        let nearby = self.packed.nearby[patch.plan as usize];
+        let mut places = List::new();
         let mut plain = Plain {
-            ring,
+            patch,
             places: &mut places,
+            numbers: smallvec![u32::MAX; patch.ring.vertices.len()],
         };
         for (edge, (line, flags, corner)) in (0..).zip(lines(topology, patch.part, turn)) {
             let number = 1 + edge as usize;
-            if matches!(line, Line::Edge(edge) if self.agreed.contains(&edge)) {
+            if matches!(line, Line::Edge(edge) if self.agreed[edge as usize]) {
                 let flipped = patch.is_flipped(topology, edge);
                 let turn = (edge + 2 * u32::from(flipped)) % 4;
                 let direction = if flipped { abi::USE_FLIPPED } else { 0 };
-                border.flags[number] = abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;
-                border.roots[number] = self.strip(patch.plan, edge, flipped);
+                uses[number].flags = abi::USE_INSIDE | direction | turn << abi::USE_TURN_SHIFT;
+                uses[number].root = self.strip(patch, edge, flipped);
                 continue;
             }
             match self.lines.known.get(&line) {
                 Some((ring, plan)) => {
                     let flags = flags ^ self.line_flags(patch.part.face, corner, line, ring, *plan);
                     let flipped = 2 * (flags & abi::USE_FLIPPED);
-                    border.flags[number] = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
-                    border.rings[number] = self.places(ring, &plain);
+                    uses[number].flags = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
+                    uses[number].ring = self.places(ring, &plain);
                     let plan = self.lines.first + *plan as u32;
-                    let found = self.plan(&mut border, number, plan);
+                    let found = self.plan(&mut uses[number], plan);
                     // Half of an edge needs what is one level deeper in the whole.
                     let deeper = usize::from(flags & HALVES != 0);
                     counts[number] = std::array::from_fn(|level| found[level + deeper]);
                 }
                 None => {
-                    border.flags[number] = edge << abi::USE_TURN_SHIFT;
+                    uses[number].flags = edge << abi::USE_TURN_SHIFT;
                     let vertices = edge_rows(topology, patch.part.face, corner);
-                    border.roots[number] =
-                        self.plain_node(vertices.map(|vertex| plain.point(vertex)));
+                    uses[number].root = self.plain_node(vertices.map(|vertex| plain.point(vertex)));
                 }
             }
         }
         for (corner, point) in (0..).zip(points(topology, patch.part, turn)) {
             let number = 5 + corner as usize;
             // Points near a corner are relative to its vertex; near the middle of an edge, to that of the n-gon's corner.
-            let own = if point.is_some() { corner } else { 0 };
-            border.rings[number] = self.list(vec![own]);
+            let own = if point.is_some() {
+                patch.corner(corner)
+            } else {
+                0
+            };
+            uses[number].ring = self.list(smallvec![own]);
             let Some(point) = point else { continue };
             match self.vertices.known.get(&point) {
                 Some((ring, plan)) => {
                     let local = ring.faces.iter().position(|&face| face == patch.part.face);
-                    let planned = &self.vertices.plans[*plan];
+                    let (sides, planes) = self.vertices.plans[*plan].vertex_sides();
                     let side = match point {
-                        Point::Vertex(_) => planned.sides[local.expect("the face has the vertex")],
-                        Point::Centre(_) => planned.sides[0],
+                        Point::Vertex(_) => sides[local.expect("the face has the vertex")],
+                        Point::Centre(_) => sides[0],
                     };
-                    border.flags[number] = side_flags(side, planned.planes > 1);
-                    border.rings[number] = self.places(ring, &plain);
-                    self.plan(&mut border, number, self.vertices.first + *plan as u32);
+                    uses[number].flags = side_flags(side, planes > 1);
+                    uses[number].ring = self.places(ring, &plain);
+                    self.plan(&mut uses[number], self.vertices.first + *plan as u32);
+                    uses[number].root = nearby[patch.corner(corner) as usize];
                     // Position and normal.
                     counts[number] = [2; LEVELS];
                 }
@@ -255,42 +324,45 @@ impl Builder<'_> {
                     let face_corner = (turn + corner) % 4;
                     let turned = is_turned_corner(topology, patch.part.face, face_corner);
                     let quarters = (corner + u32::from(turned)) % 4;
-                    border.flags[number] = quarters << abi::USE_TURN_SHIFT;
+                    uses[number].flags = quarters << abi::USE_TURN_SHIFT;
                     let vertices = vertex_rows(topology, patch.part.face, face_corner, turned);
-                    border.roots[number] =
-                        self.plain_node(vertices.map(|vertex| plain.point(vertex)));
+                    uses[number].root = self.plain_node(vertices.map(|vertex| plain.point(vertex)));
                 }
             }
         }
-        border.plain_count = places.len() as u32;
-        border.plain = self.list(places);
-        border.ends = ends(border.plain_count, &counts);
-        border
+        let plain_count = places.len() as u32;
+        let ends = ends(plain_count, &counts)?;
+        Ok(abi::Border {
+            uses: uses.map(|used| numbered(&mut self.uses, &mut self.found.uses, used)),
+            plain: self.list(places),
+            plain_count,
+            ends: numbered(&mut self.ends, &mut self.found.ends, ends),
+        })
     }
 
     /// The root of the tree of an edge that is evaluated with the points of an inside's plan.
-    fn strip(&mut self, number: u32, edge: u32, flipped: bool) -> u32 {
-        let plan = &self.plans[number as usize];
+    fn strip(&mut self, patch: &Irregular, edge: u32, flipped: bool) -> u32 {
+        let plan = self.plans[patch.plan as usize];
         let packed = &mut *self.packed;
         let push = || {
-            let strip = plan.strips[edge as usize].as_ref();
+            let strip = patch.strip(plan, edge);
             let strip = strip.expect("faces agree on edges along which they have cells");
             if flipped {
                 packed.push_strip(plan, &strip.reversed())
             } else {
-                packed.push_strip(plan, strip)
+                packed.push_strip(plan, &strip)
             }
         };
         *self
             .strips
-            .entry((number, edge, flipped))
+            .entry((patch.plan, edge, patch.ring.mirrored, flipped))
             .or_insert_with(push)
     }
 
     /// Which side of the line the face is on, and whether it runs the other way.
     fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: usize) -> u32 {
         let Line::Edge(_) = line else { return 0 };
-        let sides = &self.lines.plans[plan].sides;
+        let sides = self.lines.plans[plan].edge_sides();
         let local = |&side: &u32| ring.faces[side as usize] == face;
         let side = sides.iter().position(local).unwrap_or(0) as u32;
         let creased = if sides.len() > 1 { abi::USE_CREASED } else { 0 };
@@ -299,24 +371,20 @@ impl Builder<'_> {
     }
 
     /// Gives a use its plan; tells how many stencils each level needs.
-    fn plan(&self, border: &mut abi::Border, number: usize, plan: u32) -> [u32; LEVELS + 1] {
+    fn plan(&self, used: &mut abi::Use, plan: u32) -> [u32; LEVELS + 1] {
         let header = &self.packed.headers[plan as usize];
-        border.sizes[number] = header.ring_size;
-        border.weights[number] = header.weights;
-        if border.flags[number] & abi::USE_LIMIT == 0 {
-            border.roots[number] = header.root;
-        }
+        (used.size, used.rows, used.root) = (header.ring_size, header.rows, header.root);
         header.counts
     }
 
     /// Where it stands which vertices of the patch's ring a plan's ring has.
     fn places(&mut self, ring: &Ring, plain: &Plain<'_>) -> u32 {
-        let places = ring.vertices.iter().map(|vertex| plain.ring[vertex]);
+        let places = ring.vertices.iter().map(|&vertex| plain.place(vertex));
         self.list(places.collect())
     }
 
     /// Where a list of places begins.
-    fn list(&mut self, places: Vec<u32>) -> u32 {
+    fn list(&mut self, places: List) -> u32 {
         let all = &mut self.found.places;
         *self.lists.entry(places).or_insert_with_key(|places| {
             all.extend_from_slice(places);
@@ -331,14 +399,5 @@ impl Builder<'_> {
             .nodes
             .entry(points)
             .or_insert_with(|| packed.push_bspline(&points))
-    }
-
-    fn number(&mut self, border: abi::Border) -> u32 {
-        let records = &mut self.found.records;
-        let words = bytemuck::cast_slice(std::slice::from_ref(&border)).to_vec();
-        *self.borders.entry(words).or_insert_with(|| {
-            records.push(border);
-            records.len() as u32 - 1
-        })
     }
 }

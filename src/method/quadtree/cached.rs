@@ -12,6 +12,7 @@ use smallvec::SmallVec;
 use crate::abi;
 use crate::method::cached::{CachedPass, CachedPoints};
 use crate::method::quadtree::twin::{Use, plans};
+use crate::method::quadtree::view::Border;
 use crate::method::{Pass, Prepared, Table};
 use crate::tessellation::{Spacing, levels, required_level};
 
@@ -52,7 +53,7 @@ struct Owned {
 #[derive(Clone, Copy)]
 struct Patch<'a> {
     pass: &'a Pass,
-    border: &'a abi::Border,
+    border: Border<'a>,
     number: usize,
 }
 
@@ -202,11 +203,9 @@ fn with_normal(own: u32) -> impl Iterator<Item = u32> {
 
 impl<'a> Patch<'a> {
     fn new(pass: &'a Pass, number: usize) -> Patch<'a> {
-        let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[3]);
-        let border = &borders[pass.patches[number].plan as usize];
         Patch {
             pass,
-            border,
+            border: Border::of(pass, number),
             number,
         }
     }
@@ -229,7 +228,7 @@ impl<'a> Patch<'a> {
 
     fn products(self, job: u32) -> u64 {
         let (kind, number, _) = parts(job);
-        let size = u64::from(self.border.sizes[number]);
+        let size = u64::from(self.border.used(number).size);
         match kind {
             abi::JOB_VERTEX => 0,
             abi::JOB_NORMAL => 2 * size,
@@ -256,18 +255,13 @@ impl<'a> Patch<'a> {
         required_level(&levels, abi::HIGHEST_LEVEL)
     }
 
-    /// Where the points of use `number` end in a slot of some plan level.
-    fn end(self, level: u32, number: usize) -> u32 {
-        self.border.ends[level as usize][number]
-    }
-
     /// How many points of use `number` a plan level has.
     fn count(self, level: u32, number: usize) -> u32 {
         let start = match number {
-            0 => abi::USES + self.border.plain_count,
-            _ => self.end(level, number - 1),
+            0 => abi::USES + self.border.record.plain_count,
+            _ => self.border.end(level, number - 1),
         };
-        self.end(level, number) - start
+        self.border.end(level, number) - start
     }
 
     fn points(self, deepest: u32) -> PatchPoints {
@@ -281,10 +275,15 @@ impl<'a> Patch<'a> {
         let list = |start: u32| &self.pass.controls[start as usize..];
         let origins = (0..USES).map(|number| match number {
             0 => 0,
-            _ if number >= 5 || self.border.sizes[number] > 0 => list(self.border.rings[number])[0],
+            _ if number >= 5 || self.border.used(number).size > 0 => {
+                list(self.border.used(number).ring)[0]
+            }
             _ => 0,
         });
-        let plain = list(self.border.plain)[..self.border.plain_count as usize].iter();
+        let abi::Border {
+            plain, plain_count, ..
+        } = *self.border.record;
+        let plain = list(plain)[..plain_count as usize].iter();
         for place in origins.chain(plain.copied()) {
             let number = *copies.entry(place).or_insert_with(|| {
                 points.push(self, job(abi::JOB_VERTEX, 0, place), 0);
@@ -294,7 +293,7 @@ impl<'a> Patch<'a> {
         }
         for number in 0..USES {
             points.starts[number] = points.places.len() as u32;
-            let plan = self.border.sizes[number] > 0;
+            let plan = self.border.used(number).size > 0;
             let is_corner = number >= 5 && plan;
             if is_corner {
                 points.push(self, job(abi::JOB_LIMIT, number, 0), 0);
@@ -316,9 +315,10 @@ impl<'a> Patch<'a> {
             }
         }
         for number in 1..USES {
-            if self.border.flags[number] & abi::USE_INSIDE != 0 {
+            let used = self.border.used(number);
+            if used.flags & abi::USE_INSIDE != 0 {
                 points.starts[number] = points.starts[0];
-            } else if self.border.sizes[number] == 0 {
+            } else if used.size == 0 {
                 points.starts[number] = abi::USES;
             }
         }
@@ -342,30 +342,35 @@ impl<'a> Patch<'a> {
 
     /// What two corners have alike that get the same limit and normal from the same ring. Where those nearby have a say, which are a face's own, none are.
     fn corner_key(self, number: usize) -> [u32; 4] {
-        let nearby = self.border.nearby[number - 5];
-        let own = match nearby {
-            abi::NO_TANGENTS => nearby,
+        let &abi::Use {
+            rows, flags, root, ..
+        } = self.border.used(number);
+        let own = match root {
+            abi::NO_TANGENTS => root,
             _ => self.number as u32,
         };
-        let flags = self.border.flags[number];
-        [self.border.weights[number], flags, nearby, own]
+        [rows, flags, root, own]
     }
 
     /// What a point is a sum of, after the vertex that it is relative to, in the order in which it is added. Long sums are compensated: what is
     /// added to them counts even if it is zero.
     fn terms(self, number: usize, row: u32, vertices: &[u32], mut each: impl FnMut((u32, u32))) {
         let of = self.of(number);
-        let (origin, weights) = of.stencil(row);
-        let place = match origin {
+        let row = of.stencil(row);
+        let place = match row.corner {
             abi::STENCIL_OWN => None,
-            corner => Some(self.pass.controls[self.border.rings[corner as usize] as usize]),
+            corner => {
+                let number = self.border.use_of_corner(corner) as usize;
+                Some(self.pass.controls[self.border.used(number).ring as usize])
+            }
         };
         each((place.map_or(vertices[0], |place| self.vertex(place)), 0));
         let compensated = vertices.len() > abi::CONTROL_INVOCATIONS as usize;
         for i in 0..vertices.len() {
             let place = of.order(i);
-            if weights[place] != 0.0 || compensated {
-                each((vertices[place], weights[place].to_bits()));
+            let weight = row.weight(place);
+            if weight != 0.0 || compensated {
+                each((vertices[place], weight.to_bits()));
             }
         }
     }

@@ -8,15 +8,21 @@ use glam::Vec3;
 use crate::abi;
 use crate::method::quadtree::twin::{Use, compensated_sum};
 use crate::method::surface::{Tangents, UNIT, reach};
+use crate::plan::Row;
 
 /// Sums over a ring. Compensated, they err by some units of rounding of the absolute sum; the ring's own positions by one each.
-fn tangents(ring: &[Vec3], [first, second]: [&[f32]; 2]) -> Tangents {
+fn tangents(ring: &[Vec3], [first, second]: [Row<'_>; 2]) -> Tangents {
     let origin = ring[0];
     let spokes = || ring.iter().map(|&point| point - origin);
-    let one = |weights: &[f32]| {
-        let terms = spokes().zip(weights).map(|(spoke, &weight)| weight * spoke);
+    let one = |row: Row<'_>| {
+        let weighted = || {
+            spokes()
+                .enumerate()
+                .map(|(i, spoke)| (row.weight(i), spoke))
+        };
+        let terms = weighted().map(|(weight, spoke)| weight * spoke);
         let (mut spread, mut total) = (0.0, 0.0);
-        for (spoke, weight) in spokes().zip(weights) {
+        for (weight, spoke) in weighted() {
             spread += weight.abs() * reach(spoke);
             total += weight.abs();
         }
@@ -33,9 +39,14 @@ fn tangents(ring: &[Vec3], [first, second]: [&[f32]; 2]) -> Tangents {
 impl Use<'_> {
     /// The normal at a corner of the patch.
     pub(super) fn vertex_normal(&self, vertices: &[Vec3], flags: u32) -> Vec3 {
-        let nearby = match self.border.nearby[self.number - 5] {
+        let nearby = match self.border.used(self.number).root {
             abi::NO_TANGENTS => None,
-            number => Some(self.of(0).tangents(vertices, number).normal()),
+            number => {
+                let normal = self.of(0).tangents(vertices, number).normal();
+                // The plan's tangents go the other way round there.
+                let mirrored = self.border.is_mirrored();
+                Some(if mirrored { -normal } else { normal })
+            }
         };
         if flags & abi::USE_CUSP != 0 {
             return nearby.unwrap_or(Vec3::ZERO);
@@ -67,7 +78,9 @@ impl Use<'_> {
     /// The pair of tangents whose first is stencil `number` of the use's plan.
     fn tangents(&self, vertices: &[Vec3], number: u32) -> Tangents {
         let ring = self.ring(vertices);
-        let rows = [number, number + 1].map(|number| &self.stencil(number).1[..ring.len()]);
-        tangents(&ring, rows)
+        tangents(
+            &ring,
+            [number, number + 1].map(|number| self.stencil(number)),
+        )
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
-use crate::plan::Ring;
+use crate::plan::{Plan, Ring, Strip};
 
 /// An irregular patch: its part, its ring, and the number of its plan.
 pub struct Irregular {
@@ -26,6 +26,14 @@ impl Irregular {
         }
     }
 
+    /// Where a vertex of the mesh stands in the ring; none where it does not.
+    pub fn place(&self, vertex: u32) -> Option<u16> {
+        let vertices = &self.ring.vertices;
+        let of = |&place: &u16| vertices[place as usize];
+        let at = self.order.binary_search_by_key(&vertex, of).ok()?;
+        Some(self.order[at])
+    }
+
     /// The order as it stands behind the ring in the list of control vertices: two 16-bit halves a word, the lower first.
     pub fn order_words(&self) -> impl Iterator<Item = u32> {
         let pairs = self.order.chunks(2);
@@ -42,6 +50,30 @@ impl Irregular {
         } else {
             0
         }
+    }
+
+    /// The corner of the patch that is corner 0..=3 of its plan, and the other way round: a mirrored plan has u and v exchanged.
+    pub fn corner(&self, corner: u32) -> u32 {
+        if self.ring.mirrored {
+            (4 - corner) % 4
+        } else {
+            corner
+        }
+    }
+
+    /// The edge of the patch that is edge 0..=3 of its plan, and the other way round.
+    pub fn edge(&self, edge: u32) -> u32 {
+        if self.ring.mirrored { 3 - edge } else { edge }
+    }
+
+    /// The cells of its plan along edge 0..=3 of the patch, in the patch's direction.
+    pub fn strip(&self, plan: &Plan, edge: u32) -> Option<Strip> {
+        let strip = plan.strips[self.edge(edge) as usize].as_ref()?;
+        Some(if self.ring.mirrored {
+            strip.mirrored()
+        } else {
+            strip.clone()
+        })
     }
 
     /// Whether edge 0..=3 of a quad's patch runs against the direction of the mesh's edge.

@@ -6,10 +6,18 @@ use crate::mesh::topology::Topology;
 /// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
 /// vertex's edges that have the lowest number.
 pub fn is_turned_corner(topology: &Topology, face: u32, corner: u32) -> bool {
-    let edges = topology.fan(face, corner);
-    let lowest = edges.edges.iter().min().expect("a vertex has edges");
-    let at = |i: usize| &edges.edges[(edges.at + i) % 4];
-    at(1) == lowest || at(3) == lowest
+    let vertex = topology.face(face)[corner as usize];
+    let edges = topology.face_edges(face);
+    let [leaving, entering] = [corner, corner + 3].map(|i| edges[i as usize % 4]);
+    let lowest = topology.vertex_edges(vertex).iter().copied().min();
+    let lowest = lowest.expect("a vertex has edges");
+    if lowest == leaving || lowest == entering {
+        return lowest == entering;
+    }
+    // Beyond the edge that enters lies a face with the one that goes on from the edge that leaves.
+    let mut beyond = topology.walk(vertex, face, entering);
+    let (beyond, _) = beyond.next().expect("four quads are around the vertex");
+    !topology.face_edges(beyond).contains(&lowest)
 }
 
 /// The nine vertices around a plain vertex, row by row, in the frame of a corner: u runs to the next vertex and v to the previous one.

@@ -1,13 +1,14 @@
 //! What has plans of its own beside the insides of patches: edges and vertices, each planned once for all that look alike.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
-use crate::plan::{
-    Configuration, EdgeKind, EdgePlan, PackedPlans, Plan, PlanOptions, Ring, VertexKind, VertexPlan,
-};
+use crate::plan::database::{Entry, Kind};
+use crate::plan::{Configuration, Database, PackedPlans, PlanOptions, Ring};
 
 /// An edge of a patch that has a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,17 +28,11 @@ pub enum Point {
 
 /// Something that has a plan of its own, and shares it with what looks alike.
 pub trait Subject: Copy + Eq + std::hash::Hash + Send + Sync {
-    type Plan: Send + Sync;
     fn ring(self, topology: &Topology) -> Ring;
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<Self::Plan>;
-    fn stencils(plan: &Self::Plan) -> &Plan;
-    /// Whether it lies inside an n-gon: the configuration is the n-gon's then.
-    fn is_inside(self) -> bool;
+    fn kind(self) -> Kind;
 }
 
 impl Subject for Line {
-    type Plan = EdgePlan;
-
     fn ring(self, topology: &Topology) -> Ring {
         match self {
             Line::Edge(edge) => Ring::of_edge(topology, edge),
@@ -46,27 +41,15 @@ impl Subject for Line {
         .expect("lines are the topology's own")
     }
 
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<EdgePlan> {
-        let kind = if self.is_inside() {
-            EdgeKind::Spoke
-        } else {
-            EdgeKind::Whole
-        };
-        EdgePlan::build(configuration, kind, options)
-    }
-
-    fn stencils(plan: &EdgePlan) -> &Plan {
-        &plan.plan
-    }
-
-    fn is_inside(self) -> bool {
-        matches!(self, Line::Spoke { .. })
+    fn kind(self) -> Kind {
+        match self {
+            Line::Edge(_) => Kind::Edge,
+            Line::Spoke { .. } => Kind::Spoke,
+        }
     }
 }
 
 impl Subject for Point {
-    type Plan = VertexPlan;
-
     fn ring(self, topology: &Topology) -> Ring {
         match self {
             Point::Vertex(vertex) => Ring::of_vertex(topology, vertex),
@@ -75,21 +58,51 @@ impl Subject for Point {
         .expect("points are the topology's own")
     }
 
-    fn build(self, configuration: &Configuration, options: PlanOptions) -> Result<VertexPlan> {
-        let kind = if self.is_inside() {
-            VertexKind::Centre
-        } else {
-            VertexKind::Control
+    fn kind(self) -> Kind {
+        match self {
+            Point::Vertex(_) => Kind::Vertex,
+            Point::Centre(_) => Kind::Centre,
+        }
+    }
+}
+
+/// Plans of a database, by numbers of their own.
+pub struct Planned {
+    /// Of each configuration that was asked for, the number of its plan.
+    pub numbers: Vec<u32>,
+    /// The plans, each once.
+    pub plans: Vec<Arc<Entry>>,
+}
+
+impl Planned {
+    pub fn new<'a>(
+        wanted: impl Iterator<Item = (Kind, &'a Configuration)>,
+        options: PlanOptions,
+        database: &Database,
+    ) -> Result<Planned> {
+        let mut known: FxHashMap<(Kind, &Configuration), u32> = FxHashMap::default();
+        let mut firsts: Vec<(Kind, &Configuration)> = Vec::new();
+        let number = |wanted| {
+            *known.entry(wanted).or_insert_with(|| {
+                firsts.push(wanted);
+                firsts.len() as u32 - 1
+            })
         };
-        VertexPlan::build(configuration, kind, options)
-    }
-
-    fn stencils(plan: &VertexPlan) -> &Plan {
-        &plan.plan
-    }
-
-    fn is_inside(self) -> bool {
-        matches!(self, Point::Centre(_))
+        let numbers = wanted.map(number).collect();
+        let mut plans: Vec<Option<Arc<Entry>>> = vec![None; firsts.len()];
+        for kind in Kind::ALL {
+            let own = (0..firsts.len()).filter(|&i| firsts[i].0 == kind);
+            let own: Vec<usize> = own.collect();
+            let configurations: Vec<&Configuration> = own.iter().map(|&i| firsts[i].1).collect();
+            let found = database.plans(kind, options, &configurations)?;
+            for (&i, (_, entry)) in own.iter().zip(found) {
+                plans[i] = Some(entry);
+            }
+        }
+        Ok(Planned {
+            numbers,
+            plans: plans.into_iter().flatten().collect(),
+        })
     }
 }
 
@@ -97,7 +110,7 @@ impl Subject for Point {
 pub struct Shared<S: Subject> {
     /// Each subject's ring, and the number of its plan.
     pub known: FxHashMap<S, (Ring, usize)>,
-    pub plans: Vec<S::Plan>,
+    pub plans: Vec<Arc<Entry>>,
     /// The number of the first among all packed plans.
     pub first: u32,
 }
@@ -108,6 +121,7 @@ impl<S: Subject> Shared<S> {
         subjects: impl Iterator<Item = S>,
         packed: &mut PackedPlans,
         options: PlanOptions,
+        database: &Database,
     ) -> Result<Shared<S>> {
         let mut seen = FxHashSet::default();
         let subjects: Vec<S> = subjects.filter(|&subject| seen.insert(subject)).collect();
@@ -115,32 +129,19 @@ impl<S: Subject> Shared<S> {
             .par_iter()
             .map(|&subject| subject.ring(topology))
             .collect();
-        let mut numbers: FxHashMap<(bool, &Configuration), usize> = FxHashMap::default();
-        let mut firsts: Vec<usize> = Vec::new();
-        let plans: Vec<usize> = subjects
-            .iter()
-            .enumerate()
-            .map(|(i, subject)| {
-                let key = (subject.is_inside(), &rings[i].configuration);
-                *numbers.entry(key).or_insert_with(|| {
-                    firsts.push(i);
-                    firsts.len() - 1
-                })
-            })
-            .collect();
-        let built: Result<Vec<S::Plan>> = firsts
-            .par_iter()
-            .map(|&i| subjects[i].build(&rings[i].configuration, options))
-            .collect();
-        let built = built?;
+        let wanted = subjects.iter().zip(&rings);
+        let wanted = wanted.map(|(subject, ring)| (subject.kind(), &ring.configuration));
+        let Planned { numbers, plans } = Planned::new(wanted, options, database)?;
         let first = packed.headers.len() as u32;
-        for plan in &built {
-            packed.push(S::stencils(plan))?;
+        for plan in &plans {
+            packed.push(plan.plan())?;
         }
-        let rings = rings.into_iter().zip(plans);
+        let rings = rings
+            .into_iter()
+            .zip(numbers.into_iter().map(|number| number as usize));
         Ok(Shared {
             known: subjects.into_iter().zip(rings).collect(),
-            plans: built,
+            plans,
             first,
         })
     }

@@ -7,10 +7,11 @@ use glam::{Vec2, Vec3};
 
 use crate::abi;
 use crate::method::Pass;
+use crate::method::quadtree::view::{self, Border};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::patch::bspline::{Basis, basis, basis_of};
 use crate::patch::crease::crease_basis;
-use crate::plan::{Plans, walk};
+use crate::plan::{Plans, Row, RowsView, walk};
 
 /// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,36 +99,37 @@ pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface
     if !turned {
         return bspline(u, v, 1.0, point).point();
     }
-    let Surface { position, du, dv } = bspline(v, u, 1.0, |x, y| point(y, x));
-    let surface = Surface {
+    exchanged(bspline(v, u, 1.0, |x, y| point(y, x))).point()
+}
+
+/// Seen with u and v exchanged.
+fn exchanged(Surface { position, du, dv }: Surface) -> Surface {
+    Surface {
         position,
         du: dv,
         dv: du,
-    };
-    surface.point()
+    }
 }
 
 /// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first
 /// vertex: so sums err by what the ring's own size has for rounding, wherever it is.
 pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let plans = plans(pass);
-    let borders: &[abi::Border] = bytemuck::cast_slice(&pass.tables[3]);
     let abi::Patch {
-        controls,
-        plan,
-        flags,
-        ..
+        controls, flags, ..
     } = pass.patches[patch];
-    let border = &borders[plan as usize];
+    let border = Border::of(pass, patch);
+    let mirrored = border.is_mirrored();
     let (number, uv) = match place(flags, uv) {
+        Place::Inside if mirrored => (0, Vec2::new(uv.y, uv.x)),
         Place::Inside => (0, uv),
         Place::Edge(edge, t) => (
             1 + edge,
-            Vec2::new(on_edge(border.flags[1 + edge as usize], t), 0.0),
+            Vec2::new(on_edge(border.used(1 + edge as usize).flags, t), 0.0),
         ),
         Place::Corner(corner) => (5 + corner, Vec2::ZERO),
     };
-    let flags = border.flags[number as usize];
+    let &abi::Use { flags, root, .. } = border.used(number as usize);
     let one_use = Use {
         pass,
         plans,
@@ -146,9 +148,13 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
             normal: one_use.vertex_normal(vertices, flags),
         };
     }
-    let (root, side) = (border.roots[number as usize], flags >> abi::USE_SIDE_SHIFT);
+    let side = flags >> abi::USE_SIDE_SHIFT;
     let surface = one_use.evaluate(&given.vertices, root, uv, side);
-    let Surface { position, du, dv } = turned(surface, flags >> abi::USE_TURN_SHIFT & 3);
+    let Surface { position, du, dv } = if number == 0 && mirrored {
+        exchanged(surface)
+    } else {
+        turned(surface, flags >> abi::USE_TURN_SHIFT & 3)
+    };
     // Half of the edge is the whole patch.
     let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
     let scale = if half { 0.5 } else { 1.0 };
@@ -158,6 +164,22 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
         dv: scale * dv,
     };
     surface.point()
+}
+
+/// The kind of the node that the inside of a patch is evaluated by at (u, v); none without plans.
+#[cfg(feature = "host")]
+pub(crate) fn node_kind(pass: &Pass, patch: usize, uv: Vec2) -> Option<u32> {
+    if pass.tables.len() <= view::BORDERS {
+        return None;
+    }
+    let border = Border::of(pass, patch);
+    let uv = if border.is_mirrored() {
+        Vec2::new(uv.y, uv.x)
+    } else {
+        uv
+    };
+    let leaf = walk(plans(pass), border.used(0).root, uv);
+    Some(leaf.expect("borders have the roots of packed trees").kind)
 }
 
 /// From along a patch's edge to along the whole edge in its own direction.
@@ -185,7 +207,7 @@ fn turned(Surface { position, du, dv }: Surface, quarters: u32) -> Surface {
 pub(super) struct Use<'a> {
     pub(super) pass: &'a Pass,
     pub(super) plans: Plans<'a>,
-    pub(super) border: &'a abi::Border,
+    pub(super) border: Border<'a>,
     /// Where the patch's ring begins.
     pub(super) controls: u32,
     pub(super) number: usize,
@@ -194,7 +216,7 @@ pub(super) struct Use<'a> {
 impl<'a> Use<'a> {
     /// Whether it has a plan, or control vertices themselves.
     fn has_plan(&self) -> bool {
-        self.border.sizes[self.number] > 0
+        self.border.used(self.number).size > 0
     }
 
     /// The vertices of its ring; of what has no plan, those that are evaluated themselves.
@@ -206,11 +228,12 @@ impl<'a> Use<'a> {
             number,
             ..
         } = *self;
-        let (start, size) = match border.sizes[number] {
-            0 => (border.plain, border.plain_count),
-            size => (border.rings[number], size),
+        let &abi::Use { size, ring, .. } = border.used(number);
+        let (start, size) = match size {
+            0 => (border.record.plain, border.record.plain_count),
+            size => (ring, size),
         };
-        let is_own = number == 0 && border.sizes[0] > 0;
+        let is_own = number == 0 && self.has_plan();
         (0..size).map(move |i| {
             let place = if is_own {
                 i
@@ -228,17 +251,19 @@ impl<'a> Use<'a> {
             .collect()
     }
 
-    /// Stencil `number` of its plan: its first word, and its weights, with whatever comes behind.
-    pub(super) fn stencil(&self, number: u32) -> (u32, &'a [f32]) {
-        let size = self.border.sizes[self.number];
-        let start = self.border.weights[self.number] + number * (size + 1);
-        let row = &self.plans.weights[start as usize..];
-        (row[0].to_bits(), &row[1..])
+    /// Stencil `number` of its plan.
+    pub(super) fn stencil(&self, number: u32) -> Row<'a> {
+        let row = self
+            .plans
+            .rows
+            .row(self.border.used(self.number).rows + number);
+        row.expect("plans have their stencils")
     }
 
     /// The vertex of a corner, which points near it are relative to.
-    fn corner(&self, positions: &[Vec3], number: u32) -> Vec3 {
-        let place = self.pass.controls[self.border.rings[number as usize] as usize];
+    fn corner(&self, positions: &[Vec3], corner: u32) -> Vec3 {
+        let number = self.border.use_of_corner(corner) as usize;
+        let place = self.pass.controls[self.border.used(number).ring as usize];
         positions[self.pass.controls[(self.controls + place) as usize] as usize]
     }
 
@@ -252,7 +277,7 @@ impl<'a> Use<'a> {
         if self.number > 0 {
             return i;
         }
-        let size = self.border.sizes[0] as usize;
+        let size = self.border.used(0).size as usize;
         let word = self.pass.controls[self.controls as usize + size + i / 2];
         (word >> (16 * (i % 2)) & 0xffff) as usize
     }
@@ -263,13 +288,13 @@ impl<'a> Use<'a> {
         if !self.has_plan() {
             return ring[number as usize];
         }
-        let (origin, weights) = self.stencil(number);
-        let origin = match origin {
+        let row = self.stencil(number);
+        let origin = match row.corner {
             abi::STENCIL_OWN => ring[0],
             corner => self.corner(positions, corner),
         };
         let places = (0..ring.len()).map(|i| self.order(i));
-        let terms = places.map(|place| weights[place] * (ring[place] - origin));
+        let terms = places.map(|place| row.weight(place) * (ring[place] - origin));
         weighted_sum(ring.len(), terms)
     }
 
@@ -358,8 +383,12 @@ fn reversed(basis: Basis<f32>) -> Basis<f32> {
 
 pub(super) fn plans(pass: &Pass) -> Plans<'_> {
     Plans {
-        nodes: bytemuck::cast_slice(&pass.tables[0]),
-        points: &pass.tables[1],
-        weights: bytemuck::cast_slice(&pass.tables[2]),
+        nodes: bytemuck::cast_slice(&pass.tables[view::NODES]),
+        points: &pass.tables[view::POINTS],
+        rows: RowsView {
+            rows: bytemuck::cast_slice(&pass.tables[view::ROWS]),
+            sets: bytemuck::cast_slice(&pass.tables[view::SETS]),
+            patterns: &pass.tables[view::PATTERNS],
+        },
     }
 }

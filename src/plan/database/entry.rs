@@ -1,0 +1,114 @@
+//! What a database has: plans of all kinds, and what each is for.
+
+use crate::error::Result;
+use crate::plan::builder::{Plan, PlanOptions};
+use crate::plan::configuration::Configuration;
+use crate::plan::edge::{EdgeKind, EdgePlan};
+use crate::plan::vertex::{Side, VertexKind, VertexPlan};
+
+/// What a plan is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum Kind {
+    /// The inside of a face, or of an n-gon's part at a corner.
+    Inside = 0,
+    /// An edge.
+    Edge = 1,
+    /// An edge inside an n-gon, see [`EdgeKind::Spoke`].
+    Spoke = 2,
+    /// A vertex.
+    Vertex = 3,
+    /// The centre of an n-gon.
+    Centre = 4,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Kind; 5] = [
+        Kind::Inside,
+        Kind::Edge,
+        Kind::Spoke,
+        Kind::Vertex,
+        Kind::Centre,
+    ];
+
+    /// Its name, in small letters.
+    pub fn name(self) -> &'static str {
+        ["inside", "edge", "spoke", "vertex", "centre"][self as usize]
+    }
+
+    /// Builds the plan of a configuration.
+    ///
+    /// # Errors
+    /// As [`Plan::build`], [`EdgePlan::build`], [`VertexPlan::build`].
+    pub(super) fn build(
+        self,
+        configuration: &Configuration,
+        options: PlanOptions,
+    ) -> Result<Entry> {
+        Ok(match self {
+            Kind::Inside => Entry::Inside(Plan::build(configuration, options)?),
+            Kind::Edge => Entry::Edge(EdgePlan::build(configuration, EdgeKind::Whole, options)?),
+            Kind::Spoke => Entry::Edge(EdgePlan::build(configuration, EdgeKind::Spoke, options)?),
+            Kind::Vertex => Entry::Vertex(VertexPlan::build(
+                configuration,
+                VertexKind::Control,
+                options,
+            )?),
+            Kind::Centre => Entry::Vertex(VertexPlan::build(
+                configuration,
+                VertexKind::Centre,
+                options,
+            )?),
+        })
+    }
+}
+
+/// A plan of some kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Entry {
+    /// Of [`Kind::Inside`].
+    Inside(Plan),
+    /// Of [`Kind::Edge`] and [`Kind::Spoke`].
+    Edge(EdgePlan),
+    /// Of [`Kind::Vertex`] and [`Kind::Centre`].
+    Vertex(VertexPlan),
+}
+
+impl Entry {
+    /// Faces on each side of an infinite crease, see [`EdgePlan::sides`]; none of other plans than edges'.
+    pub(crate) fn edge_sides(&self) -> &[u32] {
+        match self {
+            Entry::Edge(edge) => &edge.sides,
+            Entry::Inside(_) | Entry::Vertex(_) => &[],
+        }
+    }
+
+    /// How faces find their normals at a vertex, see [`VertexPlan::sides`], and how many tangent planes there are; none of other plans than vertices'.
+    pub(crate) fn vertex_sides(&self) -> (&[Side], usize) {
+        match self {
+            Entry::Vertex(vertex) => (&vertex.sides, vertex.planes),
+            Entry::Inside(_) | Entry::Edge(_) => (&[], 0),
+        }
+    }
+
+    /// Its nodes and stencils.
+    pub fn plan(&self) -> &Plan {
+        match self {
+            Entry::Inside(plan) => plan,
+            Entry::Edge(edge) => &edge.plan,
+            Entry::Vertex(vertex) => &vertex.plan,
+        }
+    }
+}
+
+/// What tells an entry from all others.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// What it is for.
+    pub kind: Kind,
+    /// How it was built.
+    pub options: PlanOptions,
+    /// The surroundings.
+    pub configuration: Configuration,
+}

@@ -1,6 +1,6 @@
 //! Changes of the control mesh, and its motion.
 
-use egui::{Slider, Ui};
+use egui::{RichText, Slider, Ui};
 
 use super::super::command::Command;
 use super::super::deform::{Deform, Kind};
@@ -18,6 +18,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
             }
         }
     });
+    let picked = viewer.selection.count();
+    if picked > 0 {
+        ui.label(RichText::new(format!("{picked} picked")).small().weak());
+    }
     sharpness(ui, viewer);
     ui.horizontal_wrapped(|ui| {
         let steps = viewer

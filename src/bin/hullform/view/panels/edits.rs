@@ -58,7 +58,8 @@ fn sharpness(ui: &mut Ui, viewer: &mut Viewer) {
     });
     viewer.places.insert("sharpness", response.rect);
     if response.changed() {
-        viewer.sharpen(|_| sharpness, response.dragged());
+        let held = response.dragged() || response.is_pointer_button_down_on();
+        viewer.sharpen(|_| sharpness, held);
     }
     if response.drag_stopped() {
         if let Some(part) = viewer.edited() {

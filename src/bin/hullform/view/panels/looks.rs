@@ -102,7 +102,8 @@ fn cut(ui: &mut Ui, viewer: &mut Viewer) {
     let most = greatest_level(cutting.backend);
     let level = row(ui, "level", |ui| {
         let slider = Slider::new(&mut cutting.level, 1.0..=most).logarithmic(true);
-        ui.add(slider.max_decimals(2))
+        // Not drawn to round numbers: levels between them are what is to be seen.
+        ui.add(slider.max_decimals(2).smart_aim(false))
     });
     viewer.places.insert("level", level.rect);
     row(ui, "adaptive", |ui| {

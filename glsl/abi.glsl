@@ -196,6 +196,14 @@ const uint SHADING_NODE = 3u;
 const uint SHADING_VALENCE = 4u;
 // Shading: one dark colour, for lines.
 const uint SHADING_LINES = 5u;
+// Shading: the tess level of the patch, of an edge near it.
+const uint SHADING_LEVEL = 6u;
+// Shading: squares of texture coordinates, eight a unit.
+const uint SHADING_CHECKER = 7u;
+// Shading: how deep in the quadtree a point was evaluated.
+const uint SHADING_DEPTH = 8u;
+// Shading: the height of the displacement.
+const uint SHADING_HEIGHT = 9u;
 
 // What the host decides about a patch before it is drawn.
 struct PatchDraw {

@@ -5,6 +5,8 @@
 
 #include "lib/interface.glsl"
 #include "method"
+#include "lib/displacement.glsl"
+#include "lib/levels.glsl"
 #include "lib/shading.glsl"
 
 // One of SHADING_...; a constant of the pipeline, so that no fragment pays for what others are shaded by.
@@ -20,12 +22,65 @@ layout(location = 4) flat in uint in_drawn;
 
 layout(location = 0) out vec4 out_colour;
 
-// A colour a node kind, and a fine dark line around each cell of the quadtree.
+// A fine dark line around each cell of the quadtree.
+float cell_line(Cell cell, vec2 pixel) {
+    vec2 from_edge = min(cell.uv, 1.0 - cell.uv) / max(pixel * cell.scale, vec2(1e-6));
+    return 1.0 - 0.55 * (1.0 - smoothstep(0.5, 1.5, min(from_edge.x, from_edge.y)));
+}
+
+// A colour a node kind.
 vec3 node_colour(Patch record, vec2 pixel) {
     Cell cell = cell_at(record, in_uv);
-    vec2 from_edge = min(cell.uv, 1.0 - cell.uv) / max(pixel * cell.scale, vec2(1e-6));
-    float line = 1.0 - smoothstep(0.5, 1.5, min(from_edge.x, from_edge.y));
-    return kind_colour(cell.kind) * (1.0 - 0.55 * line);
+    return kind_colour(cell.kind) * cell_line(cell, pixel);
+}
+
+// A colour a level of the quadtree: each is half as large as the one above it.
+vec3 depth_colour(Patch record, vec2 pixel) {
+    Cell cell = cell_at(record, in_uv);
+    return ramp(log2(max(cell.scale, 1.0)) / float(HIGHEST_LEVEL)) * cell_line(cell, pixel);
+}
+
+// The level of the edge that is near, else that of the inside; each power of two is a sixth of the ramp.
+vec3 level_colour(uint number, Patch record) {
+    Levels levels = patch_levels(number, record);
+    float level = levels.inside;
+    float near = 0.15;
+#ifdef TRIANGLES
+    vec3 away = vec3(in_uv.y, 1.0 - in_uv.x - in_uv.y, in_uv.x);
+    for (uint i = 0u; i < 3u; ++i)
+#else
+    vec4 away = vec4(in_uv.y, 1.0 - in_uv.x, 1.0 - in_uv.y, in_uv.x);
+    for (uint i = 0u; i < 4u; ++i)
+#endif
+    {
+        if (away[i] < near) {
+            near = away[i];
+            level = levels.edges[i];
+        }
+    }
+    return ramp(log2(clamp(level, 1.0, 64.0)) / 6.0);
+}
+
+// Squares of texture coordinates, each pixel with the mean over what it covers.
+vec3 checker_colour() {
+    vec2 at = 8.0 * in_texture;
+    vec2 width = max(fwidth(at), vec2(1e-5));
+    vec2 sum = abs(fract(0.5 * (at - 0.5 * width)) - 0.5) - abs(fract(0.5 * (at + 0.5 * width)) - 0.5);
+    vec2 mean = 2.0 * sum / width;
+    return mix(vec3(0.10, 0.11, 0.13), vec3(0.72, 0.70, 0.66), 0.5 - 0.5 * mean.x * mean.y);
+}
+
+// How far bumps have lifted a point. It is only known where it is now: where it was follows by going back along the normal some times, each
+// nearer than the one before, since bumps are low beside their width.
+vec3 height_colour(vec2 displacement) {
+    if (displacement.x == 0.0) return vec3(0.3);
+    vec3 normal = direction(in_normal);
+    vec3 slope;
+    float height = 0.0;
+    for (uint i = 0u; i < 4u; ++i) {
+        height = bumps((in_position - displacement.x * height * normal) * displacement.y, slope);
+    }
+    return ramp(height);
 }
 
 // The valence of the nearest corner: warm below four, cool above, fading towards the middle of the patch.
@@ -85,6 +140,10 @@ void main() {
     case SHADING_PATCH: colour = patch_colour(number * 2u + record.ptex); break;
     case SHADING_NODE: colour = node_colour(record, pixel); break;
     case SHADING_VALENCE: colour = valence_colour(record); break;
+    case SHADING_LEVEL: colour = level_colour(number, record); break;
+    case SHADING_CHECKER: colour = checker_colour(); break;
+    case SHADING_DEPTH: colour = depth_colour(record, pixel); break;
+    case SHADING_HEIGHT: colour = height_colour(views[view].displacement); break;
     default: gloss = 1.0;
     }
     out_colour = vec4(lit(colour, normal, to_eye, right, back, gloss), 1.0);

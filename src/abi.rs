@@ -320,6 +320,14 @@ constants! {
     SHADING_VALENCE = 4;
     /// Shading: one dark colour, for lines.
     SHADING_LINES = 5;
+    /// Shading: the tess level of the patch, of an edge near it.
+    SHADING_LEVEL = 6;
+    /// Shading: squares of texture coordinates, eight a unit.
+    SHADING_CHECKER = 7;
+    /// Shading: how deep in the quadtree a point was evaluated.
+    SHADING_DEPTH = 8;
+    /// Shading: the height of the displacement.
+    SHADING_HEIGHT = 9;
 }
 
 structs! {

@@ -68,6 +68,7 @@
 //! | `vulkan` | through `host` | `gpu`: the layer over a borrowed Vulkan device; without it the crate is pure CPU code |
 //! | `host` | yes | `host`: instance, device choice and offscreen target; `conformance`: the suite of `hullform verify` |
 //! | `cli` | yes | the `hullform` program |
+//! | `view` | yes | its window, `hullform view` |
 //! | `shaderc` | no | compile `glsl/` at build time instead of embedding the modules in `glsl/spirv` |
 //!
 //! An engine takes `default-features = false, features = ["vulkan"]`.

@@ -36,6 +36,15 @@ vec3 lit(vec3 colour, vec3 normal, vec3 to_eye, vec3 right, vec3 back, float glo
     return colour * light + gloss * (0.25 * highlight * vec3(1.0, 0.97, 0.92) + grazing * 0.12 * vec3(0.8, 0.9, 1.0));
 }
 
+// From dark violet over blue and green to yellow, in linear light, after viridis (Smith, van der Walt 2015).
+vec3 ramp(float share) {
+    const vec3 STOPS[5] = vec3[](vec3(0.058, 0.000, 0.089), vec3(0.043, 0.083, 0.258), vec3(0.015, 0.282, 0.263),
+        vec3(0.107, 0.578, 0.126), vec3(0.984, 0.799, 0.019));
+    float at = 4.0 * clamp(share, 0.0, 1.0);
+    uint stop = min(uint(at), 3u);
+    return mix(STOPS[stop], STOPS[stop + 1u], at - float(stop));
+}
+
 // A pleasant colour a number, by the golden angle around the hue circle.
 vec3 patch_colour(uint number) {
     float hue = fract(float(number) * 0.61803398875) * 6.2831853;

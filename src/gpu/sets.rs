@@ -22,6 +22,11 @@ const BEFORE_FRAGMENTS: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     RING.as_raw() | vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::GEOMETRY.as_raw(),
 );
 
+/// The same, and those that compute.
+const EVALUATING: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    BEFORE_FRAGMENTS.as_raw() | vk::ShaderStageFlags::COMPUTE.as_raw(),
+);
+
 /// What a set has at a binding, and which stages see it.
 pub(super) type Slot = (u32, vk::DescriptorType, vk::ShaderStageFlags);
 
@@ -44,17 +49,17 @@ pub(super) const TABLES: &[Slot] = &[
     ),
 ];
 
-/// What positions decide.
+/// What positions decide. Fragments are made of what has been evaluated.
 pub(super) const POSE: &[Slot] = &[
-    (abi::BINDING_POSITIONS, STORAGE, STAGES),
-    (abi::BINDING_POINTS, STORAGE, STAGES),
+    (abi::BINDING_POSITIONS, STORAGE, EVALUATING),
+    (abi::BINDING_POINTS, STORAGE, EVALUATING),
 ];
 
 /// What a frame decides, and what the device writes in it.
 pub(super) const FRAME: &[Slot] = &[
     (abi::BINDING_SCRATCH, STORAGE, RING),
     (abi::BINDING_COUNTERS, STORAGE, RING),
-    (abi::BINDING_DRAWS, STORAGE, BEFORE_FRAGMENTS),
+    (abi::BINDING_DRAWS, STORAGE, DRAWING),
     (abi::BINDING_CAPTURE, STORAGE, BEFORE_FRAGMENTS),
     (
         abi::BINDING_INSTANCES,

@@ -120,6 +120,14 @@ pub enum Shading {
     Node,
     /// The valences of the face's vertices.
     Valence,
+    /// The tess levels of patches and their edges.
+    Level,
+    /// Squares of texture coordinates, eight a unit.
+    Checker,
+    /// How deep in the quadtree a point was evaluated.
+    Depth,
+    /// The height of the displacement.
+    Height,
 }
 
 impl Shading {
@@ -130,6 +138,10 @@ impl Shading {
             Shading::Patch => abi::SHADING_PATCH,
             Shading::Node => abi::SHADING_NODE,
             Shading::Valence => abi::SHADING_VALENCE,
+            Shading::Level => abi::SHADING_LEVEL,
+            Shading::Checker => abi::SHADING_CHECKER,
+            Shading::Depth => abi::SHADING_DEPTH,
+            Shading::Height => abi::SHADING_HEIGHT,
         }
     }
 }

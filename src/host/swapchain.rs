@@ -1,120 +1,25 @@
 //! Pictures in a window: a surface, and the swapchain that shows what is drawn, one frame after the other.
 
+mod choice;
+mod copy;
+mod frame;
+mod surface;
+
 use std::time::Duration;
 
 use ash::{khr, vk};
 
 use crate::error::{Error, Result};
 use crate::gpu::failed;
-use crate::gpu::features::has_extension;
-use crate::host::instance::unavailable;
-use crate::host::{Device, DeviceInfo, Instance};
+use crate::host::Device;
+use choice::{choose, extent, usage};
+
+pub use choice::Pacing;
+pub use frame::{Image, Shown};
+pub use surface::WindowSurface;
 
 /// How long [`Swapchain::wait`] waits: as [`Device::submit`].
 const PATIENCE: Duration = Duration::from_secs(300);
-
-/// What a window shows Vulkan's pictures in. Destroyed when it is dropped; the window must outlive it.
-pub struct WindowSurface {
-    instance: Instance,
-    functions: khr::surface::Instance,
-    raw: vk::SurfaceKHR,
-}
-
-impl WindowSurface {
-    /// Takes over a surface.
-    ///
-    /// # Safety
-    /// `raw` was made from `instance`, which has `VK_KHR_surface`; nobody else destroys it, and its window lives longer than this.
-    pub unsafe fn new(instance: &Instance, raw: vk::SurfaceKHR) -> WindowSurface {
-        WindowSurface {
-            functions: khr::surface::Instance::new(instance.entry(), instance.raw()),
-            instance: instance.clone(),
-            raw,
-        }
-    }
-
-    /// What a device lacks to show pictures in it, in words.
-    pub(super) fn missing(&self, device: &DeviceInfo) -> Result<Vec<String>> {
-        let (physical, name) = (device.physical, khr::swapchain::NAME);
-        let mut missing = Vec::new();
-        // SAFETY: the device was listed by this live instance, here and below.
-        let has = unsafe { has_extension(self.instance.raw(), physical, name) };
-        if !has.map_err(unavailable("vkEnumerateDeviceExtensionProperties"))? {
-            missing.push(name.to_string_lossy().into_owned());
-        }
-        if let Some(family) = device.support.graphics_family {
-            // SAFETY: as above; the family is one of the device's.
-            let shows = unsafe {
-                let functions = &self.functions;
-                functions.get_physical_device_surface_support(physical, family, self.raw)
-            };
-            if !shows.map_err(failed("vkGetPhysicalDeviceSurfaceSupportKHR"))? {
-                missing.push("a queue that draws and shows pictures in this window".into());
-            }
-        }
-        Ok(missing)
-    }
-}
-
-impl Drop for WindowSurface {
-    fn drop(&mut self) {
-        // SAFETY: it is ours, and its swapchain has gone: see `Swapchain::drop`.
-        unsafe { self.functions.destroy_surface(self.raw, None) };
-    }
-}
-
-/// How pictures follow one another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Pacing {
-    /// With the display: no picture is torn, none is made that is not shown. Every device has it.
-    #[default]
-    Display,
-    /// The latest picture at each refresh, where the device can; else with the display.
-    Latest,
-    /// At once, and perhaps torn, where the device can; else with the display.
-    Immediate,
-}
-
-impl Pacing {
-    fn mode(self, able: &[vk::PresentModeKHR]) -> vk::PresentModeKHR {
-        let wanted = match self {
-            Pacing::Display => vk::PresentModeKHR::FIFO,
-            Pacing::Latest => vk::PresentModeKHR::MAILBOX,
-            Pacing::Immediate => vk::PresentModeKHR::IMMEDIATE,
-        };
-        if able.contains(&wanted) {
-            wanted
-        } else {
-            vk::PresentModeKHR::FIFO
-        }
-    }
-}
-
-/// What became of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
-    /// It is on its way to the display.
-    Yes,
-    /// Nothing was recorded: an earlier frame is still drawn, or the display has no image to spare. Try again a little later.
-    NotYet,
-    /// Nothing was recorded, or it may not be seen: the window has changed. Call [`Swapchain::resize`] and draw again.
-    WindowChanged,
-    /// Nothing was recorded: the window has no area, for it is minimised.
-    Hidden,
-}
-
-/// What a frame is drawn into.
-#[derive(Clone, Copy, Debug)]
-pub struct Image {
-    /// The image of the display. Its contents are undefined when recording begins, and it is to be in the layout `PRESENT_SRC_KHR` when it ends.
-    pub raw: vk::Image,
-    /// A view of it.
-    pub view: vk::ImageView,
-    /// Which of the swapchain's images it is.
-    pub number: usize,
-    /// Its size in pixels.
-    pub extent: vk::Extent2D,
-}
 
 /// The images of a window, and what it takes to draw them one at a time: a frame is recorded when the one before it is done, so whatever it uses
 /// may be written by the host without a copy a frame. The host never waits for it: [`Swapchain::frame`] says when it is too early.
@@ -293,13 +198,13 @@ impl Swapchain {
 
     /// Records a frame and sends it to the display, if the one before it is done and the display has an image to spare. Nothing waits.
     ///
-    /// `record` gets a command buffer outside of any render pass. If it fails nothing is shown, and the error comes back.
+    /// `record` gets this, a command buffer outside of any render pass, and the image. If it fails nothing is shown, and the error comes back.
     ///
     /// # Errors
     /// Vulkan's own; those of `record`.
     pub fn frame(
         &mut self,
-        record: impl FnOnce(vk::CommandBuffer, Image) -> Result<()>,
+        record: impl FnOnce(&Swapchain, vk::CommandBuffer, Image) -> Result<()>,
     ) -> Result<Shown> {
         if self.stale {
             return Ok(Shown::WindowChanged);
@@ -341,7 +246,7 @@ impl Swapchain {
     fn record(
         &self,
         number: usize,
-        record: impl FnOnce(vk::CommandBuffer, Image) -> Result<()>,
+        record: impl FnOnce(&Swapchain, vk::CommandBuffer, Image) -> Result<()>,
     ) -> Result<()> {
         let device = self.device.raw();
         let begin = vk::CommandBufferBeginInfo::default()
@@ -358,6 +263,7 @@ impl Swapchain {
         let (raw, view) = self.images[number];
         let extent = self.extent;
         record(
+            self,
             self.cmd,
             Image {
                 raw,
@@ -574,111 +480,5 @@ impl Drop for Swapchain {
 impl Swapchain {
     fn is_lost(&self) -> bool {
         matches!(self.is_busy(), Err(Error::DeviceLost { .. }))
-    }
-}
-
-/// The best of a window's formats: one whose bytes are written as they are, since what is composed in a window (text above all) is made for blending
-/// of encoded colours.
-fn choose(formats: &[vk::SurfaceFormatKHR]) -> Result<vk::SurfaceFormatKHR> {
-    let wanted = [
-        vk::Format::B8G8R8A8_UNORM,
-        vk::Format::R8G8B8A8_UNORM,
-        vk::Format::A8B8G8R8_UNORM_PACK32,
-        vk::Format::B8G8R8A8_SRGB,
-        vk::Format::R8G8B8A8_SRGB,
-        vk::Format::A8B8G8R8_SRGB_PACK32,
-    ];
-    let srgb = vk::ColorSpaceKHR::SRGB_NONLINEAR;
-    let has = |format: &vk::Format| {
-        let is = |able: &&vk::SurfaceFormatKHR| able.format == *format && able.color_space == srgb;
-        formats.iter().find(is).copied()
-    };
-    wanted.iter().find_map(has).ok_or_else(|| {
-        let names = formats.iter().map(|able| format!("{:?}", able.format));
-        let names: Vec<String> = names.collect();
-        Error::NoDisplay(format!(
-            "the display has no format with 8 bits a channel in sRGB, only {}",
-            names.join(", ")
-        ))
-    })
-}
-
-/// What images are used for: drawn to, copied to, and where the display allows it copied from.
-fn usage(able: vk::ImageUsageFlags) -> Result<vk::ImageUsageFlags> {
-    let needed = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_DST;
-    if !able.contains(needed) {
-        return Err(Error::NoDisplay(format!(
-            "the display's images can be used for {able:?} alone, not for {needed:?}"
-        )));
-    }
-    Ok(needed | able & vk::ImageUsageFlags::TRANSFER_SRC)
-}
-
-/// The size that images must have, or the window's own where the window system leaves it to us.
-fn extent(able: &vk::SurfaceCapabilitiesKHR, [width, height]: [u32; 2]) -> vk::Extent2D {
-    // "0xFFFFFFFF: the surface size will be determined by the extent of a swapchain" (Vulkan spec, VkSurfaceCapabilitiesKHR).
-    if able.current_extent.width != u32::MAX {
-        return able.current_extent;
-    }
-    if width == 0 || height == 0 {
-        return vk::Extent2D::default();
-    }
-    let (least, most) = (able.min_image_extent, able.max_image_extent);
-    vk::Extent2D {
-        width: width.clamp(least.width, most.width.max(least.width)),
-        height: height.clamp(least.height, most.height.max(least.height)),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn format(format: vk::Format) -> vk::SurfaceFormatKHR {
-        vk::SurfaceFormatKHR {
-            format,
-            color_space: vk::ColorSpaceKHR::SRGB_NONLINEAR,
-        }
-    }
-
-    #[test]
-    fn formats_that_store_bytes_as_they_are_come_first_and_none_is_an_error() {
-        let both = [vk::Format::B8G8R8A8_SRGB, vk::Format::R8G8B8A8_UNORM].map(format);
-        let chosen = choose(&both).map(|chosen| chosen.format);
-        assert_eq!(chosen.ok(), Some(vk::Format::R8G8B8A8_UNORM));
-        let deep = [format(vk::Format::A2B10G10R10_UNORM_PACK32)];
-        let words = choose(&deep).expect_err("no format will do").to_string();
-        assert!(words.contains("A2B10G10R10_UNORM_PACK32"), "{words}");
-    }
-
-    #[test]
-    fn the_window_system_knows_the_size_or_leaves_it_within_bounds() {
-        let mut able = vk::SurfaceCapabilitiesKHR {
-            current_extent: vk::Extent2D {
-                width: 7,
-                height: 5,
-            },
-            min_image_extent: vk::Extent2D {
-                width: 1,
-                height: 1,
-            },
-            max_image_extent: vk::Extent2D {
-                width: 100,
-                height: 100,
-            },
-            ..Default::default()
-        };
-        assert_eq!(extent(&able, [50, 60]), able.current_extent);
-        able.current_extent.width = u32::MAX;
-        assert_eq!(extent(&able, [50, 600]).height, 100);
-        assert_eq!(extent(&able, [0, 600]), vk::Extent2D::default());
-    }
-
-    #[test]
-    fn every_display_can_pace_pictures() {
-        let fifo = vk::PresentModeKHR::FIFO;
-        assert_eq!(Pacing::Latest.mode(&[fifo]), fifo);
-        let mailbox = vk::PresentModeKHR::MAILBOX;
-        assert_eq!(Pacing::Latest.mode(&[fifo, mailbox]), mailbox);
     }
 }

@@ -91,6 +91,14 @@ pub enum Shading {
     Node,
     /// The valences of the face's vertices
     Valence,
+    /// The tess levels of patches and their edges
+    Level,
+    /// Squares of texture coordinates, eight a unit
+    Checker,
+    /// How deep in the quadtree a point was evaluated
+    Depth,
+    /// The height of the displacement
+    Height,
 }
 
 /// Everything to be drawn.
@@ -468,6 +476,10 @@ impl From<Shading> for gpu::Shading {
             Shading::Patch => gpu::Shading::Patch,
             Shading::Node => gpu::Shading::Node,
             Shading::Valence => gpu::Shading::Valence,
+            Shading::Level => gpu::Shading::Level,
+            Shading::Checker => gpu::Shading::Checker,
+            Shading::Depth => gpu::Shading::Depth,
+            Shading::Height => gpu::Shading::Height,
         }
     }
 }

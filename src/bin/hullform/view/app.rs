@@ -231,6 +231,7 @@ impl Open {
         self.due = None;
         let PhysicalSize { width, height } = self.window.inner_size();
         let size = [width, height];
+        self.program.canvas.pace(self.program.viewer.pacing);
         if self.program.canvas.is_stale() || self.program.canvas.size() != size {
             self.program.resize(size)?;
         }

@@ -3,17 +3,15 @@
 use ash::vk;
 use egui_ash_renderer::{Options, Renderer};
 use hullform::ash;
-use hullform::host::{Device, Image, OffscreenTarget, Pacing, Shown, Swapchain, WindowSurface};
+use hullform::host::{Device, OffscreenTarget, Pacing, Shown, Swapchain, WindowSurface};
 use hullform::{Error, Result};
 
 use super::picture::swizzled;
 use super::shot::Shot;
 use super::viewport::Area;
 
-/// Behind everything, where nothing else is.
-const BLACK: vk::ClearColorValue = vk::ClearColorValue {
-    float32: [0.0, 0.0, 0.0, 1.0],
-};
+/// How panels find the image, with the scene in it.
+const DRAWN: vk::ImageLayout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
 
 /// What egui wants drawn.
 #[derive(Default)]
@@ -80,17 +78,12 @@ impl Canvas {
 
     /// The format of the scene's picture: the window's, encoded by the device.
     pub fn scene_format(&self) -> vk::Format {
-        encoded(self.swapchain.format())
+        self.swapchain.picture_format()
     }
 
     /// The device.
     pub fn device(&self) -> &Device {
         &self.device
-    }
-
-    /// The scene's picture.
-    pub fn target(&self) -> Option<&OffscreenTarget> {
-        self.target.as_ref()
     }
 
     /// Draws only a part of the scene's picture from now on.
@@ -147,13 +140,14 @@ impl Canvas {
         };
         let (device, pass, shot) = (self.device.raw(), self.pass, self.shot.as_ref());
         let framebuffers = &self.framebuffers;
-        self.swapchain.frame(|cmd, image| {
+        let seen = (!area.is_empty()).then(|| (target, area.in_picture()));
+        self.swapchain.frame(|swapchain, cmd, image| {
             if let Some(scene) = scene {
                 scene(cmd, target)?;
             }
             // SAFETY: recording on the device that made everything; the target's pass has ended, and left its picture to be copied.
             unsafe {
-                cmd_copy(device, cmd, target.image(), image, area);
+                swapchain.cmd_copy(cmd, image, seen, DRAWN);
                 cmd_begin(device, cmd, pass, framebuffers[image.number], image.extent);
             }
             let drawn = renderer.cmd_draw(cmd, image.extent, panels.scale, &panels.primitives);
@@ -249,7 +243,7 @@ impl Canvas {
     fn make_panels(&mut self) -> Result<()> {
         let format = self.swapchain.format();
         let options = Options {
-            srgb_framebuffer: encoded(format) == format,
+            srgb_framebuffer: self.swapchain.picture_format() == format,
             ..Options::default()
         };
         let info = self.device.info();
@@ -265,13 +259,12 @@ impl Canvas {
     }
 
     fn make_pass(&mut self) -> Result<()> {
-        use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
         let colour = vk::AttachmentDescription::default()
             .format(self.swapchain.format())
             .samples(vk::SampleCountFlags::TYPE_1)
             .load_op(vk::AttachmentLoadOp::LOAD)
             .store_op(vk::AttachmentStoreOp::STORE)
-            .initial_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
+            .initial_layout(DRAWN)
             .final_layout(vk::ImageLayout::PRESENT_SRC_KHR);
         let attachments = [colour];
         let references = [vk::AttachmentReference {
@@ -281,17 +274,9 @@ impl Canvas {
         let subpasses = [vk::SubpassDescription::default()
             .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
             .color_attachments(&references)];
-        let dependencies = [vk::SubpassDependency::default()
-            .src_subpass(vk::SUBPASS_EXTERNAL)
-            .dst_subpass(0)
-            .src_stage_mask(Stage::TRANSFER)
-            .src_access_mask(Access::TRANSFER_WRITE)
-            .dst_stage_mask(Stage::COLOR_ATTACHMENT_OUTPUT)
-            .dst_access_mask(Access::COLOR_ATTACHMENT_READ | Access::COLOR_ATTACHMENT_WRITE)];
         let info = vk::RenderPassCreateInfo::default()
             .attachments(&attachments)
-            .subpasses(&subpasses)
-            .dependencies(&dependencies);
+            .subpasses(&subpasses);
         // SAFETY: the device is live.
         self.pass = unsafe { self.device.raw().create_render_pass(&info, None) }
             .map_err(vulkan("vkCreateRenderPass"))?;
@@ -319,87 +304,6 @@ impl Drop for Canvas {
             self.device.raw().destroy_render_pass(self.pass, None);
             self.device.raw().destroy_command_pool(self.pool, None);
         }
-    }
-}
-
-/// The format with the same bytes that the device encodes to.
-fn encoded(format: vk::Format) -> vk::Format {
-    match format {
-        vk::Format::B8G8R8A8_UNORM => vk::Format::B8G8R8A8_SRGB,
-        vk::Format::R8G8B8A8_UNORM => vk::Format::R8G8B8A8_SRGB,
-        vk::Format::A8B8G8R8_UNORM_PACK32 => vk::Format::A8B8G8R8_SRGB_PACK32,
-        other => other,
-    }
-}
-
-/// Copies the scene's area to where it stands in the window, bytes as they are, and leaves the image ready for panels.
-///
-/// # Safety
-/// `cmd` is recording on `device` outside of a render pass; the picture is in the layout `TRANSFER_SRC_OPTIMAL`, and the area in both.
-unsafe fn cmd_copy(
-    device: &ash::Device,
-    cmd: vk::CommandBuffer,
-    picture: vk::Image,
-    image: Image,
-    area: Area,
-) {
-    use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
-    let range = vk::ImageSubresourceRange::default()
-        .aspect_mask(vk::ImageAspectFlags::COLOR)
-        .level_count(1)
-        .layer_count(1);
-    let barrier = |old, access| {
-        vk::ImageMemoryBarrier::default()
-            .src_access_mask(access)
-            .dst_access_mask(Access::TRANSFER_WRITE)
-            .old_layout(old)
-            .new_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(image.raw)
-            .subresource_range(range)
-    };
-    let layers = vk::ImageSubresourceLayers::default()
-        .aspect_mask(vk::ImageAspectFlags::COLOR)
-        .layer_count(1);
-    let offset = vk::Offset3D {
-        x: area.x as i32,
-        y: area.y as i32,
-        z: 0,
-    };
-    let region = vk::ImageCopy::default()
-        .src_subresource(layers)
-        .src_offset(offset)
-        .dst_subresource(layers)
-        .dst_offset(offset)
-        .extent(vk::Extent3D {
-            width: area.width,
-            height: area.height,
-            depth: 1,
-        });
-    let none = vk::DependencyFlags::empty();
-    let to = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-    // SAFETY: this function's contract. The first barrier begins with the stages that wait for the display to give the image back.
-    unsafe {
-        let first = [barrier(vk::ImageLayout::UNDEFINED, Access::empty())];
-        let waited = Stage::TRANSFER | Stage::COLOR_ATTACHMENT_OUTPUT;
-        device.cmd_pipeline_barrier(cmd, waited, Stage::TRANSFER, none, &[], &[], &first);
-        device.cmd_clear_color_image(cmd, image.raw, to, &BLACK, &[range]);
-        if area.width == 0 || area.height == 0 {
-            return;
-        }
-        let second = [barrier(to, Access::TRANSFER_WRITE)];
-        device.cmd_pipeline_barrier(
-            cmd,
-            Stage::TRANSFER,
-            Stage::TRANSFER,
-            none,
-            &[],
-            &[],
-            &second,
-        );
-        let from = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        device.cmd_copy_image(cmd, picture, from, image.raw, to, &[region]);
     }
 }
 

@@ -60,11 +60,6 @@ impl Draft {
         }
     }
 
-    /// What it began with: its faces and options.
-    pub fn base(&self) -> &ControlMesh {
-        &self.base
-    }
-
     /// As a control mesh.
     ///
     /// # Errors

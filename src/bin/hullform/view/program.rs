@@ -1,5 +1,6 @@
 //! The program behind the window: it starts what is needed of what the viewer wants, takes what is ready, and draws what has changed.
 
+mod drawing;
 mod saves;
 mod start;
 mod state;
@@ -15,8 +16,7 @@ use hullform::{Error, Result};
 use super::canvas::{Canvas, Panels};
 use super::clipboard::Clipboard;
 use super::context::{Context, Drawn, Key};
-use super::errors::{Legend, Measured, Subject};
-use super::overlay::Overlay;
+use super::errors::{Measured, Subject};
 use super::panels::{self, Status};
 use super::part::Wanted;
 use super::probe::{Found, Ray};
@@ -85,23 +85,8 @@ pub struct Program {
     probe: Option<[f64; 2]>,
     found: Option<Found>,
     /// What the scene's picture shows.
-    drawn: Option<Drawing>,
+    drawn: Option<drawing::Drawing>,
     fresh: bool,
-}
-
-/// What a picture of the scene depends on.
-#[derive(Clone, PartialEq)]
-struct Drawing {
-    look: super::viewer::Look,
-    cutting: super::viewer::Cutting,
-    compare: super::viewer::Compare,
-    orbit: super::orbit::Orbit,
-    frozen: Option<super::orbit::Orbit>,
-    selection: super::selection::Selection,
-    sides: Vec<Side>,
-    parts: Vec<(u64, u64, u64)>,
-    legend: Option<Legend>,
-    ready: usize,
 }
 
 /// What became of a frame.
@@ -333,8 +318,22 @@ impl Program {
             && running.saved == 0
     }
 
-    /// Runs the panels on what came in.
-    pub fn panels(&mut self, input: egui::RawInput) -> egui::FullOutput {
+    /// Runs the panels on what came in. What a button of the mouse does stands between what came before it and what after: else a drag that begins
+    /// and ends within one slow frame would be none.
+    pub fn panels(&mut self, mut input: egui::RawInput) -> egui::FullOutput {
+        let runs = runs(std::mem::take(&mut input.events));
+        let mut output = egui::FullOutput::default();
+        for events in runs {
+            let one = egui::RawInput {
+                events,
+                ..input.take()
+            };
+            output.append(self.panels_once(one));
+        }
+        output
+    }
+
+    fn panels_once(&mut self, input: egui::RawInput) -> egui::FullOutput {
         self.look_under_cursor();
         let legend = self.legend();
         let egui = self.egui.clone();
@@ -352,42 +351,6 @@ impl Program {
         })
     }
 
-    /// What the colours of the map mean that is shown.
-    fn legend(&self) -> Option<Legend> {
-        let kind = self.viewer.compare.map?;
-        let sides = Stage::sides(&self.viewer);
-        let parts = self.stage.parts.iter();
-        let all = parts.flat_map(|staged| sides.iter().map(move |side| (staged, side.recipe)));
-        let all = all.filter_map(|(staged, side)| self.measured(staged, side).cloned());
-        let all: Vec<Arc<Measured>> = all.collect();
-        Legend::of(kind, &all)
-    }
-
-    /// What the picture of the scene depends on, as it is.
-    fn drawing(&self) -> Drawing {
-        let viewer = &self.viewer;
-        let ready = self.stage.missing(viewer, &self.context).len();
-        Drawing {
-            look: viewer.look,
-            cutting: viewer.cutting,
-            compare: viewer.compare,
-            orbit: viewer.orbit,
-            frozen: viewer.frozen,
-            selection: viewer.selection.clone(),
-            sides: Stage::sides(viewer),
-            parts: viewer
-                .parts
-                .iter()
-                .map(|part| {
-                    let revision = part.history().map_or(0, |history| history.revision());
-                    (part.number(), part.moves(), revision)
-                })
-                .collect(),
-            legend: self.legend(),
-            ready,
-        }
-    }
-
     /// Shows a frame, with the scene drawn anew if it has changed. Only when the canvas is not busy.
     pub fn show(&mut self, panels: &Panels) -> Result<Outcome> {
         let started = Instant::now();
@@ -399,7 +362,7 @@ impl Program {
         let changed = self.fresh || self.drawn.as_ref() != Some(&drawing);
         let mut scene = changed && !area.is_empty();
         if scene {
-            let overlay = self.overlay(f64::from(panels.scale), drawing.legend.as_ref());
+            let overlay = self.overlay(f64::from(panels.scale), drawing.legend());
             if let Err(error) = self.stage.decide(&self.viewer, &overlay, &self.context) {
                 self.fails(error)?;
                 scene = false;
@@ -429,32 +392,6 @@ impl Program {
             self.fresh &= !scene && changed;
         }
         Ok(Outcome { shown, scene })
-    }
-
-    fn overlay(&self, scale: f64, legend: Option<&Legend>) -> Overlay {
-        let sides = Stage::sides(&self.viewer);
-        let area = sides.first().map_or(self.viewer.area, |side| side.viewport);
-        let mut overlay = Overlay::new(&self.viewer, area, scale);
-        overlay.maps = vec![Default::default(); 2];
-        let Some(legend) = legend else { return overlay };
-        let (eye, all) = (self.viewer.orbit.eye(), self.viewer.sphere());
-        for side in &sides {
-            let (vertices, triangles) = &mut overlay.maps[side.recipe];
-            for staged in &self.stage.parts {
-                let Some(measured) = self.measured(staged, side.recipe) else {
-                    continue;
-                };
-                let view = eye.view(measured.model.placement(), side.viewport.aspect(), all);
-                let Some(map) = measured.map(legend.kind, legend.scale, &view) else {
-                    continue;
-                };
-                let first = vertices.len() as u32;
-                vertices.extend(map);
-                let own = measured.surface.triangles.iter();
-                triangles.extend(own.map(|triangle| triangle.map(|corner| first + corner)));
-            }
-        }
-        overlay
     }
 
     /// Goes along with a window of this size.
@@ -494,6 +431,22 @@ impl Program {
         }
         Ok(false)
     }
+}
+
+/// Events in their order, those of the mouse's buttons by themselves; one run at least.
+fn runs(events: Vec<egui::Event>) -> Vec<Vec<egui::Event>> {
+    let mut runs = vec![Vec::new()];
+    for event in events {
+        let alone = matches!(event, egui::Event::PointerButton { .. });
+        let last_alone = runs.last().is_some_and(|run: &Vec<egui::Event>| {
+            matches!(run.last(), Some(egui::Event::PointerButton { .. }))
+        });
+        if (alone || last_alone) && runs.last().is_some_and(|run| !run.is_empty()) {
+            runs.push(Vec::new());
+        }
+        runs.last_mut().expect("there is one").push(event);
+    }
+    runs
 }
 
 /// The side at a place of the picture (-1..1, y up), and the place in that side's own view.

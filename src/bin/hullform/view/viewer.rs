@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use hullform::gpu::{Backend, Cut, Residence};
+use hullform::host::Pacing;
 use hullform::mesh::Scheme;
-use hullform::method::METHODS;
 use hullform::tessellation::Spacing;
 
 use super::context::{Recipe, greatest_level};
@@ -132,6 +132,8 @@ pub struct Viewer {
     pub sheet: bool,
     /// Whether panels are there.
     pub panels: bool,
+    /// How pictures follow one another.
+    pub pacing: Pacing,
     /// The scene's area in the window.
     pub area: Area,
     /// Where things are in the window, by name, in points: for who drives it by script.
@@ -197,6 +199,7 @@ impl Default for Viewer {
             notices: Notices::default(),
             sheet: false,
             panels: true,
+            pacing: Pacing::Display,
             area: Area::default(),
             places: BTreeMap::new(),
             wishes: Vec::new(),
@@ -285,10 +288,4 @@ impl Viewer {
             .position(|part| Some(part.number()) == number);
         self.parts.get_mut(at.unwrap_or(0))
     }
-}
-
-/// The name in the table of methods, which lives as long as the program.
-pub fn method_name(name: &str) -> Option<&'static str> {
-    let mut names = METHODS.iter().map(|method| method.name);
-    names.find(|own| *own == name)
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 
@@ -12,6 +13,8 @@ use super::workers::Wake;
 pub struct Watch {
     watcher: Option<RecommendedWatcher>,
     changed: Receiver<PathBuf>,
+    /// What is told of; other files in their folders may change as they like.
+    files: Arc<Mutex<BTreeSet<PathBuf>>>,
     folders: BTreeSet<PathBuf>,
 }
 
@@ -19,19 +22,23 @@ impl Watch {
     /// Nothing is watched yet. Where the system cannot watch, nothing ever changes.
     pub fn new(wake: Wake) -> Watch {
         let (sender, changed) = channel();
+        let files = Arc::<Mutex<BTreeSet<PathBuf>>>::default();
+        let watched = files.clone();
         let told = move |event: notify::Result<notify::Event>| {
             let Ok(event) = event else { return };
             let written = event.kind.is_modify() || event.kind.is_create();
-            for path in event.paths.into_iter().filter(|_| written) {
+            let places = event.paths.iter().filter_map(|path| place(path));
+            for place in places.filter(|place| written && files_of(&watched).contains(place)) {
                 // Nobody listens any more once the window has gone.
-                let _ = sender.send(path);
+                let _ = sender.send(place);
+                wake();
             }
-            wake();
         };
         let watcher = notify::recommended_watcher(told);
         Watch {
             watcher: watcher.ok(),
             changed,
+            files,
             folders: BTreeSet::new(),
         }
     }
@@ -42,10 +49,11 @@ impl Watch {
             return;
         };
         for file in files {
-            let Some(folder) = place(file).and_then(|file| Some(file.parent()?.to_path_buf()))
-            else {
+            let Some(place) = place(file) else { continue };
+            let Some(folder) = place.parent().map(Path::to_path_buf) else {
                 continue;
             };
+            files_of(&self.files).insert(place);
             if !self.folders.contains(&folder)
                 && watcher.watch(&folder, RecursiveMode::NonRecursive).is_ok()
             {
@@ -56,9 +64,12 @@ impl Watch {
 
     /// The files that have changed since this was asked last.
     pub fn changed(&self) -> BTreeSet<PathBuf> {
-        let changed = self.changed.try_iter();
-        changed.filter_map(|path| place(&path)).collect()
+        self.changed.try_iter().collect()
     }
+}
+
+fn files_of(files: &Mutex<BTreeSet<PathBuf>>) -> MutexGuard<'_, BTreeSet<PathBuf>> {
+    files.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Where a file is, by the real name of its folder: the file itself may be away for a moment.
@@ -73,7 +84,6 @@ pub fn place(file: &Path) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
     use std::time::{Duration, Instant};
 
     #[test]

@@ -1,6 +1,6 @@
 //! Changes of the control mesh, and its motion.
 
-use egui::{Slider, Ui};
+use egui::{RichText, Slider, Ui};
 
 use super::super::command::Command;
 use super::super::deform::{Deform, Kind};
@@ -18,6 +18,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
             }
         }
     });
+    let picked = viewer.selection.count();
+    if picked > 0 {
+        ui.label(RichText::new(format!("{picked} picked")).small().weak());
+    }
     sharpness(ui, viewer);
     ui.horizontal_wrapped(|ui| {
         let steps = viewer
@@ -54,7 +58,8 @@ fn sharpness(ui: &mut Ui, viewer: &mut Viewer) {
     });
     viewer.places.insert("sharpness", response.rect);
     if response.changed() {
-        viewer.sharpen(|_| sharpness, response.dragged());
+        let held = response.dragged() || response.is_pointer_button_down_on();
+        viewer.sharpen(|_| sharpness, held);
     }
     if response.drag_stopped() {
         if let Some(part) = viewer.edited() {

@@ -11,6 +11,7 @@ use super::super::viewer::{Beside, Cull, ErrorKind, Viewer};
 use super::{choice, heading, row};
 
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
+    files(ui, viewer);
     heading(ui, "look");
     camera(ui, viewer);
     let all: Vec<_> = SHADINGS
@@ -31,6 +32,34 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
     cut(ui, viewer);
     heading(ui, "compare");
     compare(ui, viewer);
+}
+
+/// What is shown, and what was: files can also be dropped on the window.
+fn files(ui: &mut Ui, viewer: &mut Viewer) {
+    let names: Vec<String> = viewer.parts.iter().map(|part| part.name()).collect();
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        if ui.small_button("◀").clicked() {
+            chosen = Some(Command::Neighbour(false));
+        }
+        if ui.small_button("▶").clicked() {
+            chosen = Some(Command::Neighbour(true));
+        }
+        let list = egui::ComboBox::from_id_salt("files").selected_text(names.join(", "));
+        let list = list.width(168.0).truncate();
+        let recent = viewer.recent.clone();
+        list.show_ui(ui, |ui| {
+            for path in recent {
+                let shown = viewer.parts.len() == 1 && viewer.parts[0].path() == Some(&path);
+                if ui.selectable_label(shown, path.to_string_lossy()).clicked() {
+                    viewer.open([Some(path)]);
+                }
+            }
+        });
+    });
+    if let Some(command) = chosen {
+        viewer.obey(command);
+    }
 }
 
 fn camera(ui: &mut Ui, viewer: &mut Viewer) {
@@ -73,7 +102,8 @@ fn cut(ui: &mut Ui, viewer: &mut Viewer) {
     let most = greatest_level(cutting.backend);
     let level = row(ui, "level", |ui| {
         let slider = Slider::new(&mut cutting.level, 1.0..=most).logarithmic(true);
-        ui.add(slider.max_decimals(2))
+        // Not drawn to round numbers: levels between them are what is to be seen.
+        ui.add(slider.max_decimals(2).smart_aim(false))
     });
     viewer.places.insert("level", level.rect);
     row(ui, "adaptive", |ui| {

@@ -2,14 +2,16 @@
 
 use egui::{Color32, RichText, Sense, Stroke, Ui};
 
+use hullform::host::Pacing;
+
 use super::super::readings::{Series, bytes, grouped};
 use super::super::viewer::Viewer;
-use super::{Status, heading};
+use super::{Status, choice, heading};
 
 /// How many buffers are told.
 const MOST: usize = 8;
 
-pub(super) fn show(ui: &mut Ui, viewer: &Viewer, status: &Status<'_>) {
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, status: &Status<'_>) {
     let readings = status.readings;
     for (name, facts) in &readings.models {
         heading(ui, name);
@@ -49,6 +51,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, status: &Status<'_>) {
             .iter()
             .map(|(a, b)| (a.as_str(), b.clone())),
     );
+    pacing(ui, viewer);
     let words = match readings.validation {
         None => "validation is off".to_string(),
         Some(0) => "no validation message".to_string(),
@@ -65,7 +68,15 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, status: &Status<'_>) {
         heading(ui, "under the cursor");
         table(ui, "probe", found.facts().into_iter());
     }
-    let _ = viewer;
+}
+
+fn pacing(ui: &mut Ui, viewer: &mut Viewer) {
+    let all = [
+        (Pacing::Display, "with the display".to_string()),
+        (Pacing::Latest, "the latest".to_string()),
+        (Pacing::Immediate, "at once".to_string()),
+    ];
+    choice(ui, "frames", &mut viewer.pacing, &all);
 }
 
 fn table<'a>(ui: &mut Ui, name: &str, rows: impl Iterator<Item = (&'a str, String)>) {

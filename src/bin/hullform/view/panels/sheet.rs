@@ -49,3 +49,53 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
     });
     viewer.sheet = open;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write;
+    use std::path::Path;
+
+    const BEGIN: &str = "<!-- generated: keys -->\n";
+    const END: &str = "<!-- end -->";
+
+    /// Mouse and keys as a table; keys that do the same stand together.
+    fn table() -> String {
+        let mut rows: Vec<(String, &str)> = Vec::new();
+        let mouse = MOUSE.iter().map(|&(how, what)| (how.to_string(), what));
+        let keys = KEYS
+            .iter()
+            .map(|binding| (format!("`{}`", key_words(binding)), binding.words));
+        for (key, words) in mouse.chain(keys) {
+            match rows.iter_mut().find(|(_, other)| *other == words) {
+                Some((known, _)) => *known += &format!(", {key}"),
+                None => rows.push((key, words)),
+            }
+        }
+        let mut table = String::from("| | | | |\n| --- | --- | --- | --- |\n");
+        for pair in rows.chunks(2) {
+            for (key, words) in pair {
+                write!(table, "| {key} | {words} ").expect("a string takes all");
+            }
+            writeln!(table, "|").expect("a string takes all");
+        }
+        table
+    }
+
+    #[test]
+    fn the_readme_has_the_keys_of_the_window() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+        let old = std::fs::read_to_string(&path).expect("there is a README");
+        let (before, rest) = old.split_once(BEGIN).expect("it has a table of keys");
+        let (_, after) = rest.split_once(END).expect("the table has an end");
+        let new = format!("{before}{BEGIN}\n{}\n{END}{after}", table());
+        if std::env::var_os("HULLFORM_UPDATE").is_some() {
+            std::fs::write(&path, new).expect("it can be written");
+        } else {
+            assert!(
+                old == new,
+                "the table is old; HULLFORM_UPDATE=1 cargo test --bin hullform writes it anew"
+            );
+        }
+    }
+}

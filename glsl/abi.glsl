@@ -327,6 +327,10 @@ struct View {
     mat4 clip_from_model;
     // The eye in local units.
     vec3 eye;
+    // To the picture's right: a unit vector, or zero where the view has none.
+    vec3 right;
+    // Out of the picture towards who looks, likewise.
+    vec3 back;
     // Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
     vec2 displacement;
 };

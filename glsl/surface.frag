@@ -41,10 +41,10 @@ vec3 valence_colour(Patch record) {
 
 // The direction in which the pixel is seen. Of a triangle that is seen from its edge the line of sight may meet the plane behind the eye, or
 // nowhere.
-vec3 towards_eye(Axes view) {
-    vec3 to_eye = direction(views[drawn_view(in_drawn)].eye - in_position);
-    float along = dot(to_eye, view.back);
-    return along > 0.0 ? to_eye : along < 0.0 ? -to_eye : view.back;
+vec3 towards_eye(vec3 eye, vec3 back) {
+    vec3 to_eye = direction(eye - in_position);
+    float along = dot(to_eye, back);
+    return along > 0.0 ? to_eye : along < 0.0 ? -to_eye : back;
 }
 
 // The normal of the side that is seen. gl_FrontFacing tells the side, not the normal itself: at a silhouette that points away from the eye on
@@ -53,10 +53,10 @@ vec3 towards_eye(Axes view) {
 // Each of the two alone is lost in rounding somewhere: the plane on slivers, the eye's view at silhouettes. Where the surface has no normal, or
 // opposite ones meet, the plane's will do.
 vec3 normal_of_side(vec3 to_eye) {
-    vec3 plane = direction(cross(direction(dFdx(in_position)), direction(dFdy(in_position))));
+    vec3 plane = cross(scaled(dFdx(in_position)), scaled(dFdy(in_position)));
     if (dot(plane, to_eye) < 0.0) plane = -plane;
     vec3 normal = direction(in_normal);
-    if (normal == vec3(0.0)) return plane == vec3(0.0) ? to_eye : plane;
+    if (normal == vec3(0.0)) return plane == vec3(0.0) ? to_eye : direction(plane);
     if (!gl_FrontFacing) normal = -normal;
     return dot(normal, plane) < 0.0 && dot(normal, to_eye) < -0.1 ? -normal : normal;
 }
@@ -70,11 +70,12 @@ vec3 seen_normal(vec3 to_eye) {
 
 void main() {
     uint number = drawn_patch(in_drawn);
-    View seen = views[drawn_view(in_drawn)];
     Patch record = patch_record(number);
     vec2 pixel = fwidth(in_uv);
-    Axes view = view_axes(seen.clip_from_model, seen.eye);
-    vec3 to_eye = towards_eye(view);
+    uint view = drawn_view(in_drawn);
+    vec3 right = views[view].right;
+    vec3 back = views[view].back;
+    vec3 to_eye = towards_eye(views[view].eye, back);
     vec3 normal = seen_normal(to_eye);
     vec3 colour = vec3(0.56, 0.33, 0.22);
     float gloss = 0.25;
@@ -86,5 +87,5 @@ void main() {
     case SHADING_VALENCE: colour = valence_colour(record); break;
     default: gloss = 1.0;
     }
-    out_colour = vec4(lit(colour, normal, to_eye, view, gloss), 1.0);
+    out_colour = vec4(lit(colour, normal, to_eye, right, back, gloss), 1.0);
 }

@@ -452,6 +452,10 @@ structs! {
         clip_from_model: [[f32; 4]; 4],
         /// The eye in local units.
         eye: [f32; 3],
+        /// To the picture's right: a unit vector, or zero where the view has none.
+        right: [f32; 3],
+        /// Out of the picture towards who looks, likewise.
+        back: [f32; 3],
         /// Displacement along the normal: its height, and its waves per unit of length. No height, no displacement.
         displacement: [f32; 2],
     }

@@ -115,6 +115,9 @@ pub enum Error {
     /// No Vulkan device can do the work; the text says what each one lacks.
     #[error("no suitable Vulkan device: {}", visible(.0))]
     NoDevice(String),
+    /// No window can be opened; the text says why.
+    #[error("no window can be opened: {}", visible(.0))]
+    NoDisplay(String),
     /// The host or the device has no memory left for a Vulkan call.
     #[error(
         "{call} failed: {result}; free memory, or ask for less: a lower level, a smaller picture or mesh"
@@ -192,12 +195,12 @@ impl Error {
         }
     }
 
-    /// The exit code of the command line: 1 failed, 2 bad input or usage, 3 no suitable device.
+    /// The exit code of the command line: 1 failed, 2 bad input or usage, 3 no suitable device, or no display.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input { .. } | Error::File { .. } | Error::Option { .. } => 2,
             Error::Misuse(_) => 2,
-            Error::NoDevice(_) => 3,
+            Error::NoDevice(_) | Error::NoDisplay(_) => 3,
             Error::OutOfMemory { .. }
             | Error::DeviceLost { .. }
             | Error::Vulkan { .. }

@@ -222,3 +222,45 @@ fn the_limit_is_drawn_where_a_method_has_it() {
     ];
     assert!(told.iter().all(|part| words.contains(part)), "{words}");
 }
+
+#[test]
+fn pipelines_are_kept_in_one_file_a_device_and_what_is_damaged_or_in_the_way_is_no_error() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let cache = folder.path().join("a/b");
+    let picture = folder.path().join("p.png");
+    let render = |cache: &str| {
+        let size = ["--size", "32x32", "--pipeline-cache", cache];
+        let output = run(&[&["render", "builtin:cube", "-o", name(&picture)], &size[..]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert_eq!(stderr(&output), "");
+        fs::read(&picture).expect("written")
+    };
+    let drawn = render("none");
+    assert_eq!(names(folder.path()), ["p.png"]);
+    assert_eq!(render(name(&cache)), drawn);
+    let [file] = &names(&cache)[..] else {
+        panic!("{:?}", names(&cache));
+    };
+    let file = cache.join(file);
+    let kept = fs::read(&file).expect("written");
+    for garbage in [
+        &kept[..kept.len() - 1],
+        b"",
+        b"hullform pipelines 1\n",
+        &[0; 4096],
+    ] {
+        fs::write(&file, garbage).expect("written");
+        assert_eq!(render(name(&cache)), drawn);
+        assert_eq!(names(&cache).len(), 1);
+        assert!(
+            fs::read(&file)
+                .expect("written")
+                .starts_with(b"hullform pipelines 1\n")
+        );
+    }
+    // A file where the folder should be.
+    assert_eq!(render(name(&picture)), drawn);
+}

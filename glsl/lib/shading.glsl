@@ -5,42 +5,34 @@
 #include "abi.glsl"
 #include "lib/unit.glsl"
 
+// Where the lights are: to the picture's right, up, and out of it.
+const vec3 KEY = normalize(vec3(-0.65, 0.80, 0.55));
+const vec3 BEHIND = normalize(vec3(0.9, 0.35, -0.35));
+
 // The direction of a vector of any size, or zero where it has none. For colours: unlike `unit` it is as the device's square root is.
 vec3 direction(vec3 v) {
     vec3 sized = scaled(v);
     return sized * inversesqrt(max(dot(sized, sized), 1.0));
 }
 
-// The axes of a picture in model space: to its right, up, and out of it towards who looks.
-struct Axes {
-    vec3 right;
-    vec3 up;
-    vec3 back;
-};
-
-// They are in the matrix to clip space: w, row 3, grows straight away from the eye, and x, row 0, to the right, if the picture's middle is
-// elsewhere with a share of w. Up follows from both, since a viewport may turn y over. An orthographic w does not grow; the eye is far away
-// then, and seen from the model's middle in the direction in which it is seen from everywhere.
-Axes view_axes(mat4 clip_from_model, vec3 eye) {
-    mat4 rows = transpose(clip_from_model);
-    vec3 away = direction(rows[3].xyz);
-    vec3 back = away == vec3(0.0) ? direction(eye) : -away;
-    vec3 along_x = direction(rows[0].xyz);
-    vec3 right = direction(along_x - dot(along_x, back) * back);
-    return Axes(right, cross(back, right), back);
-}
+float fourth(float x) { return (x * x) * (x * x); }
 
 // A warm key light from above the eye's left, a cool one from behind the right, sky above and ground below; `gloss` is the strength of
-// the highlights. Cosines stay within what powers are defined for, however directions were rounded.
-vec3 lit(vec3 colour, vec3 normal, vec3 to_eye, Axes view, float gloss) {
-    vec3 key = direction(view.back * 0.55 - view.right * 0.65 + view.up * 0.80);
-    vec3 behind = direction(view.right * 0.9 - view.back * 0.35 + view.up * 0.35);
+// the highlights. Lights stand still in the picture: where its axes point is the view's. Powers are products:
+// cheaper than logarithms, and defined however directions were rounded.
+vec3 lit(vec3 colour, vec3 normal, vec3 to_eye, vec3 right, vec3 back, float gloss) {
+    vec3 up = cross(back, right);
+    vec3 key = KEY.x * right + KEY.y * up + KEY.z * back;
+    vec3 behind = BEHIND.x * right + BEHIND.y * up + BEHIND.z * back;
     vec3 ambient = mix(vec3(0.10, 0.09, 0.085), vec3(0.26, 0.30, 0.36), 0.5 + 0.5 * normal.y);
     float key_light = max(dot(normal, key), 0.0);
     float behind_light = max(dot(normal, behind), 0.0);
     vec3 light = ambient + vec3(1.05, 0.98, 0.88) * key_light + vec3(0.20, 0.28, 0.42) * behind_light;
-    float highlight = pow(clamp(dot(normal, direction(key + to_eye)), 0.0, 1.0), 60.0);
-    float grazing = pow(1.0 - clamp(dot(normal, to_eye), 0.0, 1.0), 5.0);
+    float mirrored = fourth(clamp(dot(normal, direction(key + to_eye)), 0.0, 1.0));
+    float twentieth = mirrored * fourth(mirrored);
+    float highlight = twentieth * twentieth * twentieth;
+    float slant = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
+    float grazing = slant * fourth(slant);
     return colour * light + gloss * (0.25 * highlight * vec3(1.0, 0.97, 0.92) + grazing * 0.12 * vec3(0.8, 0.9, 1.0));
 }
 

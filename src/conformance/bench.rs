@@ -4,11 +4,9 @@ use std::cell::Cell;
 use std::ops::{Deref, DerefMut};
 use std::rc::Rc;
 
-use ash::vk;
-
 use crate::error::Result;
-use crate::gpu::{Cut, Fill, Shading, SurfaceOptions, Workaround, failed};
-use crate::host::{self, Device, Encoding, Frame, OffscreenTarget, Style};
+use crate::gpu::{Cut, Fill, Shading, SurfaceOptions, Workaround};
+use crate::host::{self, Device, Encoding, Frame, OffscreenTarget, PipelineCache, Style};
 use crate::mesh::Model;
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
@@ -64,20 +62,11 @@ impl Bench {
         fill: Fill,
         data: &[u8],
     ) -> Result<Vec<u8>> {
-        let device = self.bench.device().raw();
-        let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
-        // SAFETY: the device is live; the data are empty or what this device gave.
-        let cache = unsafe { device.create_pipeline_cache(&info, None) }
-            .map_err(failed("vkCreatePipelineCache"))?;
+        // SAFETY: the data are empty or what this device gave.
+        let cache = unsafe { PipelineCache::new(self.bench.device(), data) }?;
         let style = Style::new(SurfaceOptions::default(), spacing, fill);
-        let built = self.bench.rebuild(prepared, style, cache);
-        // SAFETY: the cache is ours, and the pipelines do not need it any more.
-        let held = unsafe {
-            let held = device.get_pipeline_cache_data(cache);
-            device.destroy_pipeline_cache(cache, None);
-            held.map_err(failed("vkGetPipelineCacheData"))
-        };
-        built.and(held)
+        self.bench.rebuild(prepared, style, cache.raw())?;
+        cache.data()
     }
 }
 

@@ -106,6 +106,11 @@ impl Bound {
     /// Makes a descriptor set of each list of bindings.
     ///
     /// # Safety
+    /// All buffers.
+    pub fn buffers(&self) -> &[Buffer] {
+        &self.buffers
+    }
+
     /// `device` is live and made `layout`; no sets have been made before.
     pub unsafe fn describe(
         &mut self,

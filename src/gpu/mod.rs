@@ -45,6 +45,7 @@ pub use memory::{Memory, MemoryBlock, MemoryRequest};
 pub use pipeline::Pipelines;
 pub use points::PointPipeline;
 pub use pose::Pose;
+pub use staging::Handover;
 pub use surface::TessellatedSurface;
 pub use tables::Tables;
 pub use target::{

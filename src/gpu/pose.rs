@@ -8,7 +8,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::cached::Cache;
-use crate::gpu::staging::{Staging, cmd_copy};
+use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
 use crate::gpu::{Layout, Memory, Tables};
 use crate::method::{Controls, Prepared};
 
@@ -113,6 +113,36 @@ impl Pose {
     pub unsafe fn cmd_upload(&mut self, device: &ash::Device, cmd: vk::CommandBuffer) {
         // SAFETY: this function's contract.
         unsafe { cmd_copy(device, cmd, &mut self.staging, &self.bound, self.readers) };
+    }
+
+    /// The same on a queue that copies while others draw. Where it returns true, [`cmd_acquire`](Self::cmd_acquire) is recorded with the same
+    /// families for a queue that draws, and executed after this by a semaphore, before anything is drawn there; otherwise nothing has changed.
+    ///
+    /// # Safety
+    /// As [`cmd_upload`](Self::cmd_upload), but `cmd` is for a queue of the family `handover.from`, and no submitted command still uses this pose.
+    pub unsafe fn cmd_upload_and_release(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        handover: Handover,
+    ) -> bool {
+        // SAFETY: this function's contract.
+        unsafe { cmd_copy_and_release(device, cmd, &mut self.staging, &self.bound, handover) }
+    }
+
+    /// Records that the queues that draw take over what has been uploaded.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made this pose, outside of a render pass, for a queue of the family `handover.to`, and is executed after
+    /// [`cmd_upload_and_release`](Self::cmd_upload_and_release).
+    pub unsafe fn cmd_acquire(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        handover: Handover,
+    ) {
+        // SAFETY: this function's contract.
+        unsafe { cmd_acquire(device, cmd, &self.bound, handover, self.readers) };
     }
 
     /// Replaces the control vertices, by positions in local units, and what is computed from them; they arrive with the next

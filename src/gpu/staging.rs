@@ -8,6 +8,16 @@ use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::bound::Bound;
 use crate::gpu::{Buffer, Memory};
 
+/// The queue families between which what has been copied changes hands. The buffers are `EXCLUSIVE`: what one family has written another one sees
+/// only after a release by the one and an acquisition by the other, with a semaphore between (Vulkan spec, "Queue Family Ownership Transfer").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Handover {
+    /// The family of the queue that copies.
+    pub from: u32,
+    /// The family of the queues that draw.
+    pub to: u32,
+}
+
 /// What is to be copied into numbered buffers, together.
 #[derive(Debug, Default)]
 pub(super) struct Staging {
@@ -91,5 +101,92 @@ pub(super) unsafe fn cmd_copy(
             device.cmd_copy_buffer(cmd, from, bound.buffer(*number).raw(), &[*copy]);
         }
         cmd_make_visible(device, cmd, transfer, readers, read);
+    }
+}
+
+/// Records the copies that are due on a queue that does not draw, and their buffers' release. Returns whether there were any.
+///
+/// # Safety
+/// As [`cmd_copy`]; nothing that was submitted still uses the buffers.
+pub(super) unsafe fn cmd_copy_and_release(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    staging: &mut Staging,
+    bound: &Bound,
+    handover: Handover,
+) -> bool {
+    let Some((from, copies)) = staging.take_copies() else {
+        return false;
+    };
+    let (transfer, end) = (
+        vk::PipelineStageFlags::TRANSFER,
+        vk::PipelineStageFlags::BOTTOM_OF_PIPE,
+    );
+    // Whatever the buffers held is overwritten as a whole, so nobody need hand them over before (same chapter).
+    // SAFETY: this function's contract; the copies were made with the buffers' sizes.
+    unsafe {
+        for (number, copy) in copies.iter().filter(|(_, copy)| copy.size > 0) {
+            device.cmd_copy_buffer(cmd, from, bound.buffer(*number).raw(), &[*copy]);
+        }
+        let written = (vk::AccessFlags::TRANSFER_WRITE, vk::AccessFlags::empty());
+        cmd_hand_over(device, cmd, bound, handover, [transfer, end], written);
+    }
+    true
+}
+
+/// Records the acquisition of what [`cmd_copy_and_release`] has released, before whatever reads next in the stages `readers`.
+///
+/// # Safety
+/// `cmd` is recording on the device of `bound`, outside of a render pass, for a queue of the family `handover.to`, and waits for the release.
+pub(super) unsafe fn cmd_acquire(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    bound: &Bound,
+    handover: Handover,
+    readers: vk::PipelineStageFlags,
+) {
+    let read = vk::AccessFlags::SHADER_READ | vk::AccessFlags::UNIFORM_READ;
+    // The semaphore that is waited for in any of these stages comes before the barrier.
+    let stages = [readers, readers];
+    // SAFETY: this function's contract.
+    unsafe {
+        let accesses = (vk::AccessFlags::empty(), read);
+        cmd_hand_over(device, cmd, bound, handover, stages, accesses);
+    }
+}
+
+/// One half of the transfer of all buffers.
+///
+/// # Safety
+/// `cmd` is recording on the device of `bound`, outside of a render pass.
+unsafe fn cmd_hand_over(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    bound: &Bound,
+    Handover { from, to }: Handover,
+    [before, after]: [vk::PipelineStageFlags; 2],
+    (written, read): (vk::AccessFlags, vk::AccessFlags),
+) {
+    let barrier = |buffer: &Buffer| {
+        vk::BufferMemoryBarrier::default()
+            .src_access_mask(written)
+            .dst_access_mask(read)
+            .src_queue_family_index(from)
+            .dst_queue_family_index(to)
+            .buffer(buffer.raw())
+            .size(vk::WHOLE_SIZE)
+    };
+    let barriers: Vec<_> = bound.buffers().iter().map(barrier).collect();
+    // SAFETY: this function's contract.
+    unsafe {
+        device.cmd_pipeline_barrier(
+            cmd,
+            before,
+            after,
+            vk::DependencyFlags::empty(),
+            &[],
+            &barriers,
+            &[],
+        );
     }
 }

@@ -49,20 +49,7 @@ impl ColouredTriangles {
         vertices: &[ColouredVertex],
         triangles: &[[u32; 3]],
     ) -> Result<ColouredTriangles> {
-        let greatest = device.limits().max_draw_indexed_index_value;
-        // Without fullDrawIndexUint32 indices go to 2^24 - 1 (Vulkan, "maxDrawIndexedIndexValue").
-        let reach = greatest.min((1 << 24) - 1) as usize;
-        if vertices.len() > reach {
-            return Err(Error::Refused(format!(
-                "{} vertices are more than one draw takes here ({reach}); use a lower --level",
-                vertices.len()
-            )));
-        }
-        let mut corners = triangles.iter().flatten().copied();
-        if let Some(vertex) = corners.find(|&vertex| vertex as usize >= vertices.len()) {
-            let count = vertices.len();
-            return Err(Error::Misuse(Misuse::Index { vertex, count }));
-        }
+        check(device, vertices, triangles)?;
         // Null and empty until made: if a step fails, what was made before it goes with `drawn`.
         let mut drawn = ColouredTriangles {
             device: device.clone(),
@@ -70,31 +57,85 @@ impl ColouredTriangles {
             set: None,
             layout: vk::PipelineLayout::null(),
             pipeline: vk::Pipeline::null(),
-            indices: 3 * triangles.len() as u32,
-            used: used(vertices.len(), triangles),
+            indices: 0,
+            used: 0,
         };
+        let set = drawn.fill(vertices, triangles, 1)?;
+        drawn.make_pipeline(target, &set)?;
+        drawn.set = Some(set);
+        Ok(drawn)
+    }
+
+    /// Other triangles in the place of these. Buffers grow by doubling: what changes each frame costs a copy of it.
+    ///
+    /// # Errors
+    /// As [`ColouredTriangles::new`].
+    ///
+    /// # Safety
+    /// No submitted command still draws them.
+    pub unsafe fn replace(
+        &mut self,
+        vertices: &[ColouredVertex],
+        triangles: &[[u32; 3]],
+    ) -> Result<()> {
+        check(&self.device, vertices, triangles)?;
+        let (of_vertices, of_triangles) = (size_of_val(vertices), size_of_val(triangles));
+        let fits = self.buffers.len() > MARKS
+            && of_vertices as u64 <= self.buffers[0].size()
+            && of_triangles as u64 <= self.buffers[1].size();
+        if fits {
+            self.buffers[0].write(0, bytemuck::cast_slice(vertices))?;
+            self.buffers[1].write(0, bytemuck::cast_slice(triangles))?;
+            self.indices = 3 * triangles.len() as u32;
+            self.used = used(vertices.len(), triangles);
+            return Ok(());
+        }
+        self.indices = 0;
+        {
+            let mut allocator = self.device.allocator();
+            for buffer in self.buffers.drain(..) {
+                // SAFETY: this function's contract.
+                unsafe { buffer.destroy(self.device.raw(), &mut allocator) };
+            }
+        }
+        self.set = Some(self.fill(vertices, triangles, 2)?);
+        Ok(())
+    }
+
+    /// Makes the buffers, with room for so many times what is in them, and the set that shows the marks.
+    fn fill(
+        &mut self,
+        vertices: &[ColouredVertex],
+        triangles: &[[u32; 3]],
+        room: usize,
+    ) -> Result<StorageSet> {
         use MemoryLocation::{CpuToGpu, GpuToCpu};
         use vk::BufferUsageFlags as Usage;
         let (of_vertices, of_triangles) = (
             bytemuck::cast_slice(vertices),
             bytemuck::cast_slice(triangles),
         );
-        drawn.add_buffer("vertices", Usage::VERTEX_BUFFER, CpuToGpu, of_vertices)?;
-        drawn.add_buffer("indices", Usage::INDEX_BUFFER, CpuToGpu, of_triangles)?;
-        let marks = vec![0; 4 * vertices.len().max(1)];
-        drawn.add_buffer("marks", Usage::STORAGE_BUFFER, GpuToCpu, &marks)?;
-        let marks = drawn.buffers[MARKS..].iter();
-        let set = StorageSet::new(device, vk::ShaderStageFlags::VERTEX, marks)?;
-        drawn.make_pipeline(target, &set)?;
-        drawn.set = Some(set);
-        Ok(drawn)
+        self.add_buffer(
+            "vertices",
+            Usage::VERTEX_BUFFER,
+            CpuToGpu,
+            of_vertices,
+            room,
+        )?;
+        self.add_buffer("indices", Usage::INDEX_BUFFER, CpuToGpu, of_triangles, room)?;
+        let marks = vec![0; 4 * vertices.len().max(1) * room];
+        self.add_buffer("marks", Usage::STORAGE_BUFFER, GpuToCpu, &marks, 1)?;
+        self.indices = 3 * triangles.len() as u32;
+        self.used = used(vertices.len(), triangles);
+        let marks = self.buffers[MARKS..].iter();
+        StorageSet::new(&self.device, vk::ShaderStageFlags::VERTEX, marks)
     }
 
     /// Draws them.
     ///
     /// # Safety
     /// `cmd` is recording on this device, inside a render pass that is compatible with the target's, with viewport and scissor set. They
-    /// stay alive until the commands have finished. Drawn once: marks are not taken back.
+    /// stay alive until the commands have finished. Only after the first draw marks tell anything: they are not taken back.
     pub unsafe fn cmd_draw(&self, cmd: vk::CommandBuffer) {
         let device = self.device.raw();
         let sets = self.set.as_slice();
@@ -149,8 +190,9 @@ impl ColouredTriangles {
         usage: vk::BufferUsageFlags,
         location: MemoryLocation,
         bytes: &[u8],
+        room: usize,
     ) -> Result<()> {
-        let size = bytes.len() as u64;
+        let size = (bytes.len() * room) as u64;
         let device = self.device.raw();
         let allocator = &mut self.device.allocator();
         // SAFETY: device and allocator belong together; the usage needs no feature.
@@ -195,6 +237,25 @@ impl Drop for ColouredTriangles {
             }
         }
     }
+}
+
+/// Refuses what one draw cannot take, and triangles of vertices that there are not.
+fn check(device: &Device, vertices: &[ColouredVertex], triangles: &[[u32; 3]]) -> Result<()> {
+    let greatest = device.limits().max_draw_indexed_index_value;
+    // Without fullDrawIndexUint32 indices go to 2^24 - 1 (Vulkan, "maxDrawIndexedIndexValue").
+    let reach = greatest.min((1 << 24) - 1) as usize;
+    if vertices.len() > reach {
+        return Err(Error::Refused(format!(
+            "{} vertices are more than one draw takes here ({reach}); use a lower --level",
+            vertices.len()
+        )));
+    }
+    let mut corners = triangles.iter().flatten().copied();
+    if let Some(vertex) = corners.find(|&vertex| vertex as usize >= vertices.len()) {
+        let count = vertices.len();
+        return Err(Error::Misuse(Misuse::Index { vertex, count }));
+    }
+    Ok(())
 }
 
 /// How many of the vertices some triangle has.

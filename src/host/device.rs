@@ -6,8 +6,10 @@ use crate::gpu::{Enabled, ExtraFeatures, FeatureChain, failed};
 use crate::host::Instance;
 use crate::host::choice::{DeviceInfo, choose, devices};
 use crate::host::instance::unavailable;
+use crate::host::swapchain::WindowSurface;
 use ash::{khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use std::ffi::CStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -65,12 +67,40 @@ impl Device {
         selector: Option<&str>,
         extra: ExtraFeatures,
     ) -> Result<Device> {
-        let info = choose(&devices(instance)?, selector)?;
+        Device::open_among(instance, devices(instance)?, selector, extra, &[])
+    }
+
+    /// As [`Device::open`], of those that can show pictures in a window.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn open_for(
+        instance: &Instance,
+        selector: Option<&str>,
+        surface: &WindowSurface,
+    ) -> Result<Device> {
+        let mut devices = devices(instance)?;
+        for device in &mut devices {
+            device.missing.extend(surface.missing(device)?);
+        }
+        let extensions = [khr::swapchain::NAME];
+        let extra = ExtraFeatures::default();
+        Device::open_among(instance, devices, selector, extra, &extensions)
+    }
+
+    fn open_among(
+        instance: &Instance,
+        devices: Vec<DeviceInfo>,
+        selector: Option<&str>,
+        extra: ExtraFeatures,
+        extensions: &[&'static CStr],
+    ) -> Result<Device> {
+        let info = choose(&devices, selector)?;
         tracing::info!(device = info.name, driver = info.driver.info, "opened");
         let family = info.support.graphics_family;
         let family = family.expect("a suitable device has a graphics queue");
         let logical = Logical {
-            raw: create(instance, &info, family, extra)?,
+            raw: create(instance, &info, family, extra, extensions)?,
             instance: instance.clone(),
         };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -315,8 +345,10 @@ fn create(
     info: &DeviceInfo,
     family: u32,
     extra: ExtraFeatures,
+    wanted: &[&'static CStr],
 ) -> Result<ash::Device> {
     let mut extensions = info.support.extensions();
+    extensions.extend(wanted);
     // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
     let subset = khr::portability_subset::NAME;
     // SAFETY: the device was listed by this live instance.

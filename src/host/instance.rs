@@ -47,8 +47,17 @@ impl Instance {
     /// # Errors
     /// [`Error::NoDevice`] without a Vulkan loader or driver; [`Error::Option`] if validation is asked for and not installed.
     pub fn new(validation: bool) -> Result<Instance> {
+        Instance::with_extensions(validation, &[])
+    }
+
+    /// As [`Instance::new`], with instance extensions that the caller needs: those of surfaces, for one who has a window.
+    ///
+    /// # Errors
+    /// As [`Instance::new`]; [`Error::NoDisplay`] names an extension that the loader and its drivers lack.
+    pub fn with_extensions(validation: bool, wanted: &[&'static CStr]) -> Result<Instance> {
         let entry = load()?;
-        let parts = Parts::choose(&entry, validation)?;
+        let mut parts = Parts::choose(&entry, validation)?;
+        parts.add(&entry, wanted)?;
         let messages = Arc::<Messages>::default();
         // SAFETY: `messages` does not move, and is kept in the same struct as the instance.
         let raw = unsafe { create(&entry, &parts, validation.then_some(&*messages)) }?;
@@ -124,6 +133,20 @@ impl Parts {
             parts.add_validation(entry, &available)?;
         }
         Ok(parts)
+    }
+
+    fn add(&mut self, entry: &ash::Entry, wanted: &[&'static CStr]) -> Result<()> {
+        let available = extensions(entry, None)?;
+        for &name in wanted {
+            if !has(&available, name) {
+                return Err(Error::NoDisplay(format!(
+                    "Vulkan draws to no window here: it lacks {}",
+                    name.to_string_lossy()
+                )));
+            }
+            self.extensions.push(name.as_ptr());
+        }
+        Ok(())
     }
 
     fn add_validation(

@@ -1,13 +1,14 @@
 //! A picture to draw into without a window, and to read back.
 
 use crate::error::{Error, Result};
-use crate::gpu::memory::{free, out_of_memory};
+use crate::gpu::memory::free;
 use crate::gpu::{Buffer, failed};
 use crate::host::Device;
+use crate::host::area::Area;
+use crate::host::image::Image;
 use crate::host::render_pass::{self, Formats};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 /// What the bytes of a picture mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,41 +20,12 @@ pub enum Encoding {
     Unorm,
 }
 
-/// A part of a picture, in pixels from its left upper corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Area {
-    /// Its left side.
-    pub x: u32,
-    /// Its upper side.
-    pub y: u32,
-    /// Its width.
-    pub width: u32,
-    /// Its height.
-    pub height: u32,
-}
-
-impl Area {
-    /// What of it lies in a picture of this size; one pixel where nothing does.
-    fn within(self, extent: vk::Extent2D) -> Area {
-        let (x, y) = (self.x.min(extent.width - 1), self.y.min(extent.height - 1));
-        Area {
-            x,
-            y,
-            width: self.width.clamp(1, extent.width - x),
-            height: self.height.clamp(1, extent.height - y),
-        }
-    }
-
-    fn rect(self) -> vk::Rect2D {
-        vk::Rect2D {
-            offset: vk::Offset2D {
-                x: self.x as i32,
-                y: self.y as i32,
-            },
-            extent: vk::Extent2D {
-                width: self.width,
-                height: self.height,
-            },
+impl Encoding {
+    /// A format of it that every device draws to (Vulkan, "Required Format Support").
+    pub fn format(self) -> vk::Format {
+        match self {
+            Encoding::Srgb => vk::Format::R8G8B8A8_SRGB,
+            Encoding::Unorm => vk::Format::R8G8B8A8_UNORM,
         }
     }
 }
@@ -66,6 +38,9 @@ impl Area {
 pub struct OffscreenTarget {
     device: Device,
     extent: vk::Extent2D,
+    /// What there are images of.
+    part: Area,
+    /// What is drawn of that.
     area: Area,
     formats: Formats,
     render_pass: vk::RenderPass,
@@ -73,14 +48,6 @@ pub struct OffscreenTarget {
     /// Colour, depth, and with several samples the resolved colour, as the render pass numbers them.
     images: Vec<Image>,
     pixels: Option<Buffer>,
-}
-
-/// An image with its memory and view; null until made.
-#[derive(Default)]
-struct Image {
-    raw: vk::Image,
-    view: vk::ImageView,
-    allocation: Option<Allocation>,
 }
 
 impl OffscreenTarget {
@@ -103,35 +70,58 @@ impl OffscreenTarget {
         samples: u32,
         encoding: Encoding,
     ) -> Result<OffscreenTarget> {
+        OffscreenTarget::with_format(device, width, height, samples, encoding.format())
+    }
+
+    /// A picture in a format of 4 bytes a pixel that every device draws to (Vulkan, "Required Format Support"): `R8G8B8A8`, `B8G8R8A8` or
+    /// `A8B8G8R8`, `SRGB` or `UNORM`. For copies to images of such a format.
+    ///
+    /// # Errors
+    /// As [`OffscreenTarget::new`].
+    pub fn with_format(
+        device: &Device,
+        width: u32,
+        height: u32,
+        samples: u32,
+        format: vk::Format,
+    ) -> Result<OffscreenTarget> {
+        let whole = Area::whole([width, height]);
+        OffscreenTarget::cropped(device, [width, height], whole, samples, format)
+    }
+
+    /// The same picture, of which there are images of a part alone, as after [`crop`](Self::crop).
+    ///
+    /// # Errors
+    /// As [`OffscreenTarget::new`].
+    pub fn cropped(
+        device: &Device,
+        [width, height]: [u32; 2],
+        part: Area,
+        samples: u32,
+        format: vk::Format,
+    ) -> Result<OffscreenTarget> {
         check_size(device.limits(), width, height)?;
         let formats = Formats {
-            // Both are colour attachments on every device (Vulkan, "Required Format Support").
-            colour: match encoding {
-                Encoding::Srgb => vk::Format::R8G8B8A8_SRGB,
-                Encoding::Unorm => vk::Format::R8G8B8A8_UNORM,
-            },
+            colour: format,
             depth: depth_format(device),
             samples: check_samples(device.limits(), samples)?,
         };
         // Null handles until made: if a step fails, what was made before it goes with `target`.
+        let extent = vk::Extent2D { width, height };
         let mut target = OffscreenTarget {
             device: device.clone(),
-            extent: vk::Extent2D { width, height },
-            area: Area {
-                x: 0,
-                y: 0,
-                width,
-                height,
-            },
+            extent,
+            part: part.within(Area::whole([width, height])),
+            area: part.within(Area::whole([width, height])),
             formats,
             render_pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
             images: Vec::new(),
             pixels: None,
         };
-        target.make_images()?;
-        target.make_framebuffer()?;
-        target.make_pixels()?;
+        // SAFETY: the device is live; formats and samples were checked against its limits.
+        target.render_pass = unsafe { render_pass::create(device.raw(), formats) }?;
+        target.make()?;
         Ok(target)
     }
 
@@ -143,6 +133,12 @@ impl OffscreenTarget {
     /// The render pass; pipelines are made for its subpass 0.
     pub fn render_pass(&self) -> vk::RenderPass {
         self.render_pass
+    }
+
+    /// The image that has the picture when the pass has ended, one sample a pixel, in the layout `TRANSFER_SRC_OPTIMAL`, to be copied by later
+    /// commands of the same queue: the pass makes its writes visible to copies, and the next pass waits for these.
+    pub fn image(&self) -> vk::Image {
+        self.picture().raw
     }
 
     /// Samples a pixel, for the pipeline's multisample state.
@@ -163,7 +159,19 @@ impl OffscreenTarget {
     /// Draws only a part from now on, where all that is to be seen lies: nothing else is cleared, resolved and copied, and memory beside it
     /// is not touched. What lies there has the very pixels that it has in the whole.
     pub fn confine(&mut self, area: Area) {
-        self.area = area.within(self.extent);
+        self.area = area.within(self.part);
+    }
+
+    /// Makes images of a part alone, and draws that from now on; small images are cleared at once by drivers that clear parts of large ones slowly.
+    /// What lies there is seen as in the whole, but for the rounding of where a vertex falls. Pipelines for the target stay what they are.
+    ///
+    /// # Errors
+    /// Vulkan's own. Then nothing can be drawn before another call succeeds.
+    pub fn crop(&mut self, part: Area) -> Result<()> {
+        self.part = part.within(Area::whole([self.extent.width, self.extent.height]));
+        self.area = self.part;
+        self.free();
+        self.make()
     }
 
     /// Begins the render pass: in the [`area`](Self::area) colour becomes `clear` (linear, whatever the encoding), depth 1. The viewport covers
@@ -183,13 +191,15 @@ impl OffscreenTarget {
                 depth_stencil: depth,
             },
         ];
-        let area = self.area.rect();
+        let area = self.area.rect(self.part);
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(self.render_pass)
             .framebuffer(self.framebuffer)
             .render_area(area)
             .clear_values(&clears);
         let viewport = vk::Viewport::default()
+            .x(-(self.part.x as f32))
+            .y(-(self.part.y as f32))
             .width(self.extent.width as f32)
             .height(self.extent.height as f32)
             .max_depth(1.0);
@@ -225,11 +235,11 @@ impl OffscreenTarget {
                     .layer_count(1),
             )
             .image_offset(vk::Offset3D {
-                x: self.area.x as i32,
-                y: self.area.y as i32,
+                x: (self.area.x - self.part.x) as i32,
+                y: (self.area.y - self.part.y) as i32,
                 z: 0,
             })
-            .image_extent(self.area.rect().extent.into());
+            .image_extent(self.area.extent().into());
         // To the host, and to the next copy into the same buffer.
         let written = vk::BufferMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
@@ -262,7 +272,7 @@ impl OffscreenTarget {
         }
     }
 
-    /// What was copied last, the [`area`](Self::area) alone: RGBA, 8 bits each, rows from the top. Unspecified before the first copy.
+    /// What was copied last, the [`area`](Self::area) alone: 8 bits a channel in the format's order (RGBA, unless another was asked for), rows from the top. Unspecified before the first copy.
     pub fn read_pixels(&self) -> &[u8] {
         let Area { width, height, .. } = self.area;
         &self.pixels().bytes()[..4 * width as usize * height as usize]
@@ -276,6 +286,33 @@ impl OffscreenTarget {
     /// The image with one sample a pixel.
     fn picture(&self) -> &Image {
         &self.images[if self.formats.resolves() { 2 } else { 0 }]
+    }
+
+    /// Images, framebuffer and pixels of the part.
+    fn make(&mut self) -> Result<()> {
+        self.make_images()?;
+        self.make_framebuffer()?;
+        self.make_pixels()
+    }
+
+    /// Gives them back.
+    fn free(&mut self) {
+        let device = self.device.raw();
+        let mut allocator = self.device.allocator();
+        // SAFETY: all of it was made from this device; the device waits for each submission, so nothing is in use.
+        unsafe {
+            device.destroy_framebuffer(std::mem::take(&mut self.framebuffer), None);
+            for image in self.images.drain(..) {
+                device.destroy_image_view(image.view, None);
+                device.destroy_image(image.raw, None);
+                if let Some(allocation) = image.allocation {
+                    free(&mut allocator, allocation);
+                }
+            }
+            if let Some(pixels) = self.pixels.take() {
+                pixels.destroy(device, &mut allocator);
+            }
+        }
     }
 
     fn make_images(&mut self) -> Result<()> {
@@ -314,7 +351,7 @@ impl OffscreenTarget {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
-            .extent(self.extent.into())
+            .extent(self.part.extent().into())
             .mip_levels(1)
             .array_layers(1)
             .samples(samples)
@@ -324,14 +361,12 @@ impl OffscreenTarget {
 
     fn make_framebuffer(&mut self) -> Result<()> {
         let device = self.device.raw();
-        // SAFETY: the device is live; formats and samples were checked against its limits.
-        self.render_pass = unsafe { render_pass::create(device, self.formats) }?;
         let views: Vec<_> = self.images.iter().map(|image| image.view).collect();
         let info = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
             .attachments(&views)
-            .width(self.extent.width)
-            .height(self.extent.height)
+            .width(self.part.width)
+            .height(self.part.height)
             .layers(1);
         // SAFETY: the views are of this device, in the order and of the formats that the pass declares.
         self.framebuffer = unsafe { device.create_framebuffer(&info, None) }
@@ -340,7 +375,7 @@ impl OffscreenTarget {
     }
 
     fn make_pixels(&mut self) -> Result<()> {
-        let size = u64::from(self.extent.width) * u64::from(self.extent.height) * 4;
+        let size = u64::from(self.part.width) * u64::from(self.part.height) * 4;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let location = MemoryLocation::GpuToCpu;
         let mut allocator = self.device.allocator();
@@ -358,72 +393,13 @@ impl Drop for OffscreenTarget {
         if self.device.is_hung() {
             return;
         }
-        let device = self.device.raw();
-        let mut allocator = self.device.allocator();
-        // SAFETY: all of it was made from this device; the device waits for each submission, so nothing is in use.
+        self.free();
+        // SAFETY: it was made from this device, and nothing is in use.
         unsafe {
-            device.destroy_framebuffer(self.framebuffer, None);
-            device.destroy_render_pass(self.render_pass, None);
-            for image in self.images.drain(..) {
-                device.destroy_image_view(image.view, None);
-                device.destroy_image(image.raw, None);
-                if let Some(allocation) = image.allocation {
-                    free(&mut allocator, allocation);
-                }
-            }
-            if let Some(pixels) = self.pixels.take() {
-                pixels.destroy(device, &mut allocator);
-            }
-        }
-    }
-}
-
-impl Image {
-    fn make(&mut self, device: &Device, name: &str, info: &vk::ImageCreateInfo<'_>) -> Result<()> {
-        let raw = device.raw();
-        // SAFETY: the device is live; size, format and samples were checked against its limits.
-        self.raw = unsafe { raw.create_image(info, None) }.map_err(failed("vkCreateImage"))?;
-        let request = AllocationCreateDesc {
-            name,
-            // SAFETY: the image was just made from this device.
-            requirements: unsafe { raw.get_image_memory_requirements(self.raw) },
-            location: MemoryLocation::GpuOnly,
-            linear: false,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+            self.device
+                .raw()
+                .destroy_render_pass(self.render_pass, None)
         };
-        let allocation = device.allocator().allocate(&request);
-        let allocation = self.allocation.insert(allocation.map_err(out_of_memory)?);
-        let (memory, offset) = {
-            // SAFETY: the memory is bound to nothing else and outlives the image.
-            (unsafe { allocation.memory() }, allocation.offset())
-        };
-        // SAFETY: size, alignment and memory type come from the image's own requirements; the image is unbound.
-        unsafe { raw.bind_image_memory(self.raw, memory, offset) }
-            .map_err(failed("vkBindImageMemory"))?;
-        self.make_view(raw, info)
-    }
-
-    fn make_view(&mut self, device: &ash::Device, info: &vk::ImageCreateInfo<'_>) -> Result<()> {
-        let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-        let aspect = if info.usage.contains(depth) {
-            vk::ImageAspectFlags::DEPTH
-        } else {
-            vk::ImageAspectFlags::COLOR
-        };
-        let view = vk::ImageViewCreateInfo::default()
-            .image(self.raw)
-            .view_type(vk::ImageViewType::TYPE_2D)
-            .format(info.format)
-            .subresource_range(
-                vk::ImageSubresourceRange::default()
-                    .aspect_mask(aspect)
-                    .level_count(1)
-                    .layer_count(1),
-            );
-        // SAFETY: the image is of this device and bound to memory; format and aspect are its own.
-        self.view = unsafe { device.create_image_view(&view, None) }
-            .map_err(failed("vkCreateImageView"))?;
-        Ok(())
     }
 }
 

@@ -53,7 +53,8 @@ impl<T: Destroy> Owned<T> {
     /// Takes over what a device has made.
     ///
     /// # Safety
-    /// `device` and its allocator made it, and only [`Device::submit`] submits what uses it, before it is dropped.
+    /// `device` and its allocator made it, and only [`Device::submit`] and [`Swapchain::frame`](crate::host::Swapchain::frame) submit what uses it;
+    /// the latter's frame is done when it is dropped.
     pub unsafe fn new(device: &Device, made: T) -> Owned<T> {
         Owned {
             device: device.clone(),

@@ -4,7 +4,7 @@ use ash::vk;
 use glam::Vec3;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Backend, CachePipelines, Cut, DrawList, Drawing, Fill, FrameSlot, Pose, Residence,
+    Backend, CachePipelines, Cut, DrawList, Drawing, Fill, FrameSlot, Handover, Pose, Residence,
     SurfaceOptions, Tables, View,
 };
 use hullform::mesh::Model;
@@ -52,14 +52,29 @@ impl<'a> Scene<'a> {
                 (pose.expect("it fits"), slot.expect("it fits"))
             });
             let mut instances: Vec<_> = instances.collect();
+            // As from a queue of another family: with one alone, what is handed over stays where it is.
+            let family = gpu.device.queue_family();
+            let handover = Handover {
+                from: family,
+                to: family,
+            };
             let uploaded = gpu.device.submit(|cmd| {
-                tables.cmd_upload(device, cmd);
+                assert!(tables.cmd_upload_and_release(device, cmd, handover));
+                assert!(!tables.cmd_upload_and_release(device, cmd, handover));
                 for (pose, _) in &mut instances {
-                    pose.cmd_upload(device, cmd);
+                    assert!(pose.cmd_upload_and_release(device, cmd, handover));
                 }
                 Ok(())
             });
             uploaded.expect("it is executed");
+            let acquired = gpu.device.submit(|cmd| {
+                tables.cmd_acquire(device, cmd, handover);
+                for (pose, _) in &instances {
+                    pose.cmd_acquire(device, cmd, handover);
+                }
+                Ok(())
+            });
+            acquired.expect("it is executed");
             tables.finish_upload(device, allocator);
             (tables, instances)
         };

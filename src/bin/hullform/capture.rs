@@ -8,9 +8,9 @@ use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
 use hullform::gpu::{Batch, Fill, SurfaceOptions};
-use hullform::host::{Shot, Style};
+use hullform::host::{Bench, Shot, Style};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, to_ptex};
+use hullform::method::{DepthTags, Displacement, Prepared, to_ptex};
 use hullform::{Error, Result, abi};
 
 /// Vertices that are captured at once: as many as 64 MiB hold.
@@ -29,21 +29,6 @@ pub fn capture(
     camera: Option<Camera>,
     global: &Global,
 ) -> Result<Surface> {
-    let Cutting {
-        cut,
-        backend,
-        residence,
-        ..
-    } = cutting;
-    let options = SurfaceOptions {
-        backend,
-        residence,
-        ring_bytes: global.ring_bytes,
-        slots: drawing::slots(global.slots),
-        capture_vertices: CAPTURED,
-        greatest_level: cut.level,
-        ..Default::default()
-    };
     let prepared = drawing::prepare(model, chosen)?;
     let bench = drawing::blind(gpu)?;
     let camera = camera.filter(|_| cutting.adaptive.is_some());
@@ -62,7 +47,34 @@ pub fn capture(
         subject.framed(camera, SEEN)
     });
     let tags = seen.transpose()?.and_then(|framed| framed.tags);
-    let mut drawing = Drawing::new(gpu, &bench, model, prepared, options, global.points)?;
+    captured(gpu, &bench, model, prepared, (cutting, tags), global)
+}
+
+/// The same of what has been prepared, with the depth tags that are given.
+pub fn captured(
+    gpu: &Gpu,
+    bench: &Bench,
+    model: &Model,
+    prepared: Prepared,
+    (cutting, tags): (Cutting, Option<DepthTags>),
+    global: &Global,
+) -> Result<Surface> {
+    let Cutting {
+        cut,
+        backend,
+        residence,
+        ..
+    } = cutting;
+    let options = SurfaceOptions {
+        backend,
+        residence,
+        ring_bytes: global.ring_bytes,
+        slots: drawing::slots(global.slots),
+        capture_vertices: CAPTURED,
+        greatest_level: cut.level,
+        ..Default::default()
+    };
+    let mut drawing = Drawing::new(gpu, bench, model, prepared, options, global.points)?;
     drawing.tags = tags;
     let list = drawing.draw_list(cut)?;
     let style = Style::new(options, cut.spacing, Fill::Discard);

@@ -24,7 +24,7 @@ pub struct Drawing<'a> {
 
 /// A bench for what is not seen: nothing is rasterised, but draws need a render pass.
 pub fn blind(gpu: &Gpu) -> Result<Bench> {
-    Bench::new(OffscreenTarget::new(&gpu.device, 1, 1, 1)?)
+    gpu.bench(OffscreenTarget::new(&gpu.device, 1, 1, 1)?)
 }
 
 /// Prepares a model by a method, and says when that only approximates what nobody asked to be approximated.
@@ -43,6 +43,25 @@ pub fn nowhere() -> View {
         eye: [0.0; 3],
         displacement: Displacement::default(),
     }
+}
+
+/// The depth tags that a cutting asks for, of what was prepared, as seen in a picture of `size` pixels.
+pub fn tags_for(
+    model: &Model,
+    prepared: &Prepared,
+    cutting: Cutting,
+    view: &camera::View,
+    size: [f32; 2],
+) -> Result<Option<DepthTags>> {
+    let seen = Seen {
+        clip_from_model: view.clip_from_model,
+        eye: view.eye,
+        scale: model.placement().scale,
+        size,
+    };
+    let (outline, level) = (&prepared.outline, cutting.cut.level);
+    let tags = |adaptive: Adaptive| adaptive.tags(outline, &model.positions(), level, seen);
+    cutting.adaptive.map(tags).transpose()
 }
 
 /// Who gives slots.
@@ -88,16 +107,7 @@ impl<'a> Drawing<'a> {
         view: &camera::View,
         size: [f32; 2],
     ) -> Result<Option<DepthTags>> {
-        let seen = Seen {
-            clip_from_model: view.clip_from_model,
-            eye: view.eye,
-            scale: model.placement().scale,
-            size,
-        };
-        let outline = &self.prepared().outline;
-        let level = cutting.cut.level;
-        let tags = |adaptive: Adaptive| adaptive.tags(outline, &model.positions(), level, seen);
-        cutting.adaptive.map(tags).transpose()
+        tags_for(model, self.prepared(), cutting, view, size)
     }
 
     /// Refuses a draw of batches, the last there was, of which something is missing: for want of room in the ring, or because the device lost it.

@@ -8,6 +8,7 @@ mod capture;
 mod compare;
 mod devices;
 mod drawing;
+mod eye;
 mod evaluation;
 mod framing;
 mod gpu;
@@ -17,12 +18,15 @@ mod manual;
 mod model;
 mod options;
 mod output;
+mod pipelines;
+mod places;
 mod plan;
 mod progress;
 mod refused;
 mod render;
 mod tessellate;
 mod verify;
+mod view;
 
 use clap::{Parser, Subcommand};
 use hullform::error::visible;
@@ -33,7 +37,7 @@ use std::process::ExitCode;
 
 /// Subdivision surfaces through Vulkan's tessellation shaders.
 ///
-/// Exit codes: 0 done; 1 failed, or the validation layer complained; 2 bad input or usage; 3 no suitable Vulkan device.
+/// Exit codes: 0 done; 1 failed, or the validation layer complained; 2 bad input or usage; 3 no suitable Vulkan device, or no display.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 struct Arguments {
@@ -59,6 +63,8 @@ enum Command {
     Devices,
     /// Find out whether a driver keeps the rules that we rely on, and whether we keep our own
     Verify(verify::Arguments),
+    /// Open a window on models: look, cut, compare and change them
+    View(view::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -82,6 +88,7 @@ fn main() -> ExitCode {
         }
         Command::Devices => devices::run(global),
         Command::Verify(arguments) => verify::run(arguments, global),
+        Command::View(arguments) => view::run(arguments, global),
     };
     exit_code(result)
 }

@@ -20,7 +20,7 @@ pub fn named<T>(model: Option<&Path>, result: Result<T>) -> Result<T> {
 }
 
 /// What messages call MODEL.
-fn name(model: Option<&Path>) -> String {
+pub fn name(model: Option<&Path>) -> String {
     match (model, BUILTINS.first()) {
         (Some(model), _) => model.display().to_string(),
         (None, first) => format!("builtin:{}", first.map_or("", |&(name, _)| name)),

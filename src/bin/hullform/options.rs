@@ -1,5 +1,6 @@
 //! Options that several subcommands share, and how their values are read.
 
+mod standpoint;
 mod steps;
 
 use crate::adaptive::Adaptive;
@@ -14,10 +15,11 @@ use hullform::method::{
 use std::path::PathBuf;
 use std::str::FromStr;
 
+pub use standpoint::{Cull, Standpoint};
 pub use steps::{Backend, Residence, Steps};
 
 /// Options of every subcommand.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Global {
     /// Vulkan device: its index or a part of its name [default: the first discrete GPU that will do, else any]
     #[arg(long, global = true, value_name = "INDEX|NAME", value_parser = device)]
@@ -28,6 +30,9 @@ pub struct Global {
     /// Switch off the workarounds for driver faults (see `hullform devices`)
     #[arg(long, global = true)]
     pub no_workarounds: bool,
+    /// Folder in which what the driver keeps of its pipelines is kept from run to run, or `none` [default: hullform among the user's caches]
+    #[arg(long, global = true, value_name = "FOLDER|none")]
+    pub pipeline_cache: Option<PathBuf>,
     /// Print results as JSON
     // `verify` has an option of the same id that takes a file, hence the type.
     #[arg(long, id = "json", global = true, num_args = 0..=1, require_equals = true, default_missing_value = "-", value_name = "", hide_possible_values = true, value_parser = Json::printed)]
@@ -125,7 +130,7 @@ impl From<Spacing> for hullform::tessellation::Spacing {
 }
 
 /// Which surface a model has: options of all subcommands that load one.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Shape {
     /// Subdivision scheme: catmull-clark, loop, butterfly, loop-stam or bilinear [default: what the file's name begins with
     /// (`loop_`, `bilinear_`, `catmark_`), else catmull-clark]

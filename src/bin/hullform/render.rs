@@ -2,6 +2,7 @@
 
 use crate::camera::{Camera, View};
 use crate::drawing::{self, Drawing};
+use crate::eye::{Eye, Sphere};
 use crate::framing::{Framed, Subject};
 use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
@@ -9,7 +10,7 @@ use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
 use clap::{Args, ValueEnum};
 use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
-use hullform::host::{Area, Bench, OffscreenTarget, Shot, Style};
+use hullform::host::{Area, Bench, Encoding, OffscreenTarget, Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
@@ -47,12 +48,34 @@ pub struct Arguments {
     wireframe: bool,
     #[command(flatten)]
     sight: options::Sight,
+    #[command(flatten)]
+    standpoint: options::Standpoint,
+    /// Leave out triangles that are seen from behind, or from the front
+    #[arg(long, value_name = "WHICH", default_value = "none")]
+    cull: options::Cull,
+    /// Move each vertex whose position has an odd number of bits: where faces differ on an edge, a hole opens
+    #[arg(long)]
+    amplify_cracks: bool,
     /// Displace the surface along its normal by bumps of this height, as a share of the model's diagonal
     #[arg(long, value_name = "AMOUNT", default_value = "0", value_parser = options::share, allow_hyphen_values = true)]
     displace: f32,
     /// Write statistics of the drawing as JSON
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
+}
+
+#[cfg(feature = "view")]
+impl Arguments {
+    /// The size of the picture.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// The eye that was chosen.
+    #[cfg(test)]
+    pub fn eye(&self) -> Option<Eye> {
+        self.standpoint.eye()
+    }
 }
 
 /// What the colours of a picture mean.
@@ -79,6 +102,8 @@ struct Scene<'a> {
     shading: Shading,
     displacement: Displacement,
     wireframe: bool,
+    cull: options::Cull,
+    amplify_cracks: bool,
     ring_bytes: u64,
     slots: Slots,
     points: options::Points,
@@ -89,6 +114,8 @@ struct Scene<'a> {
 enum Sight {
     /// From where the camera sees all of the surface, in a picture of this size.
     Framed(Camera, Size),
+    /// From where somebody chose to look, in a picture of this size.
+    Chosen(Eye, Size),
     /// From a given place, in this part of the picture; depth tags are not asked for.
     Given(View, Area),
 }
@@ -121,7 +148,8 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     report(arguments, global, &stats)
 }
 
-fn draw_picture(
+/// Draws a model as the arguments have it, whatever model they name: RGBA, and the statistics.
+pub fn draw_picture(
     gpu: &Gpu,
     model: &Model,
     load_seconds: f64,
@@ -141,10 +169,15 @@ fn draw_picture(
         model,
         chosen: arguments.cut.chosen(model)?,
         cutting: arguments.cut.cutting(),
-        sight: Sight::Framed(arguments.sight.camera, arguments.size),
+        sight: match arguments.standpoint.eye() {
+            Some(eye) => Sight::Chosen(eye, arguments.size),
+            None => Sight::Framed(arguments.sight.camera, arguments.size),
+        },
         shading: arguments.shading,
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
+        cull: arguments.cull,
+        amplify_cracks: arguments.amplify_cracks,
         ring_bytes: global.ring_bytes,
         slots: drawing::slots(global.slots),
         points: global.points,
@@ -166,15 +199,17 @@ pub fn bench(gpu: &Gpu, width: u32, height: u32) -> Result<(Bench, u32)> {
     } else {
         1
     };
-    let mut target = OffscreenTarget::new(&gpu.device, width * factor, height * factor, SAMPLES)?;
+    let size = [width * factor, height * factor];
     // Until it is known where something is to be seen.
-    target.confine(Area {
+    let pixel = Area {
         x: 0,
         y: 0,
         width: 1,
         height: 1,
-    });
-    Ok((Bench::new(target)?, factor))
+    };
+    let format = Encoding::default().format();
+    let target = OffscreenTarget::cropped(&gpu.device, size, pixel, SAMPLES, format)?;
+    Ok((gpu.bench(target)?, factor))
 }
 
 /// Draws a model lit, by a method, as seen in `view`: in an area of the picture, whose pixels are drawn as squares of `factor`.
@@ -196,6 +231,8 @@ pub fn draw_lit(
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
+        cull: options::Cull::None,
+        amplify_cracks: false,
         ring_bytes: global.ring_bytes,
         slots: drawing::slots(global.slots),
         points: global.points,
@@ -224,12 +261,12 @@ fn draw(gpu: &Gpu, bench: &mut Bench, factor: u32, scene: &Scene<'_>) -> Result<
         width,
         height,
     } = seen.area;
-    bench.target_mut().confine(Area {
+    bench.target_mut().crop(Area {
         x: x * factor,
         y: y * factor,
         width: width * factor,
         height: height * factor,
-    });
+    })?;
     let draw = |prepared, slots| draw_with(gpu, bench, scene, prepared, plan_seconds, &seen, slots);
     let stats = draw(prepared, scene.slots)?;
     if stats["ring"]["overflows"] == 0 {
@@ -249,6 +286,21 @@ impl Scene<'_> {
                 tags: None,
                 area,
             }),
+            Sight::Chosen(eye, Size { width, height }) => {
+                let all = self.sphere();
+                let aspect = f64::from(width) / f64::from(height);
+                let view = eye.view(self.model.placement(), aspect, all);
+                let size = [width, height].map(|side| side as f32);
+                let cutting = self.cutting;
+                let tags = drawing::tags_for(self.model, prepared, cutting, &view, size)?;
+                let area = Area {
+                    x: 0,
+                    y: 0,
+                    width,
+                    height,
+                };
+                Ok(Framed { view, tags, area })
+            }
             Sight::Framed(camera, Size { width, height }) => {
                 let subject = Subject {
                     gpu,
@@ -264,6 +316,14 @@ impl Scene<'_> {
                 subject.framed(camera, [width, height])
             }
         }
+    }
+
+    /// A sphere around all of it, bumps included.
+    fn sphere(&self) -> Sphere {
+        let mut all = Sphere::around(self.model.mesh().positions().iter().copied());
+        let height = f64::from(self.displacement.height.abs()) * self.model.placement().scale;
+        all.radius += height;
+        all
     }
 
     /// What becomes of its triangles.
@@ -295,6 +355,7 @@ fn draw_with(
         count_vertices: true,
         greatest_level: cut.level,
         rounds: if scene.wireframe { 2 } else { 1 },
+        amplify_cracks: scene.amplify_cracks,
         ..Default::default()
     };
     let mut drawing = Drawing::new(gpu, bench, scene.model, prepared, options, scene.points)?;
@@ -304,7 +365,10 @@ fn draw_with(
     let mut fills = vec![scene.solid()];
     fills.extend(scene.wireframe.then_some(Fill::Lines));
     let pipelines = fills.into_iter().map(|fill| {
-        let style = Style::new(options, cut.spacing, fill);
+        let style = Style {
+            cull: scene.cull.mode(),
+            ..Style::new(options, cut.spacing, fill)
+        };
         bench.pipelines(drawing.prepared(), style)
     });
     let pipelines = pipelines.collect::<Result<Vec<_>>>()?;
@@ -388,7 +452,7 @@ fn library_view(view: &View, scene: &Scene<'_>) -> gpu::View {
 }
 
 /// Bumps as high as a share of the model's diagonal, a few dozen of them along it.
-fn bumps(model: &Model, share: f32) -> Displacement {
+pub fn bumps(model: &Model, share: f32) -> Displacement {
     let diagonal = model.diagonal() as f32;
     Displacement {
         height: share * diagonal,

@@ -4,13 +4,14 @@ mod loaded;
 
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use ash::vk;
 
 use crate::error::Result;
 use crate::frame::{Backend, Batch, Residence, SurfaceOptions};
 use crate::gpu::{Fill, Layout, PipelineOptions, Pipelines, Target, View};
-use crate::host::{Device, OffscreenTarget, Owned, StatisticsQuery};
+use crate::host::{Device, OffscreenTarget, Owned, PipelineCache, StatisticsQuery};
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
 
@@ -23,6 +24,7 @@ pub struct Bench {
     device: Device,
     target: OffscreenTarget,
     layout: Owned<Layout>,
+    cache: Option<Arc<PipelineCache>>,
     pipelines: RefCell<Vec<(Key, Rc<Owned<Pipelines>>)>>,
     statistics: Option<StatisticsQuery>,
 }
@@ -91,8 +93,14 @@ impl Bench {
             // SAFETY: the layout was just made by this device.
             layout: unsafe { Owned::new(&device, layout) },
             pipelines: RefCell::default(),
+            cache: None,
             device,
         })
+    }
+
+    /// The same, where pipelines are built with what a cache of its device holds, and are added to it.
+    pub fn with_cache(self, cache: Option<Arc<PipelineCache>>) -> Bench {
+        Bench { cache, ..self }
     }
 
     /// Its device.
@@ -129,9 +137,14 @@ impl Bench {
         if let Some(pipelines) = kept(&self.pipelines.borrow()) {
             return Ok(pipelines);
         }
-        let built = Rc::new(self.build(prepared, style, vk::PipelineCache::null())?);
+        let built = Rc::new(self.build(prepared, style, self.cache())?);
         self.pipelines.borrow_mut().push((key, built.clone()));
         Ok(built)
+    }
+
+    fn cache(&self) -> vk::PipelineCache {
+        let raw = self.cache.as_ref().map(|cache| cache.raw());
+        raw.unwrap_or_default()
     }
 
     /// Forgets all pipelines that it has built, and builds and keeps new ones with a cache of this device.

@@ -1,10 +1,10 @@
 //! `hullform compare`: methods side by side, with maps of their errors.
 
 mod costs;
-pub mod errors;
+pub(crate) mod errors;
 mod page;
-mod picture;
-mod scale;
+pub(crate) mod picture;
+pub(crate) mod scale;
 
 use std::path::{Path, PathBuf};
 

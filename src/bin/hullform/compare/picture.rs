@@ -39,6 +39,28 @@ pub fn draw_map(
     scale: Scale,
     view: &View,
 ) -> Result<()> {
+    let vertices = coloured(model, surface, errors, scale, view);
+    let drawn = ColouredTriangles::new(&gpu.device, target, &vertices, &surface.triangles)?;
+    // SAFETY: recording on the device that made everything; `drawn` outlives the submission, which is waited for.
+    gpu.device.submit(|cmd| unsafe {
+        target.begin(cmd, render::CLEAR);
+        drawn.cmd_draw(cmd);
+        target.end(cmd);
+        drawn.cmd_read_back(cmd);
+        target.cmd_copy_to_host(cmd);
+        Ok(())
+    })?;
+    drawn.check()
+}
+
+/// The points of a surface as seen in a view, each with the colour of its error.
+pub fn coloured(
+    model: &Model,
+    surface: &Surface,
+    errors: &[Option<f64>],
+    scale: Scale,
+    view: &View,
+) -> Vec<ColouredVertex> {
     let View {
         clip_from_model,
         eye,
@@ -54,18 +76,7 @@ pub fn draw_map(
             colour: [r, g, b, 1.0],
         }
     });
-    let vertices: Vec<ColouredVertex> = coloured.collect();
-    let drawn = ColouredTriangles::new(&gpu.device, target, &vertices, &surface.triangles)?;
-    // SAFETY: recording on the device that made everything; `drawn` outlives the submission, which is waited for.
-    gpu.device.submit(|cmd| unsafe {
-        target.begin(cmd, render::CLEAR);
-        drawn.cmd_draw(cmd);
-        target.end(cmd);
-        drawn.cmd_read_back(cmd);
-        target.cmd_copy_to_host(cmd);
-        Ok(())
-    })?;
-    drawn.check()
+    coloured.collect()
 }
 
 /// A point in local units, as drawing has it.
@@ -83,7 +94,7 @@ fn light(point: &Point, to_eye: Vec3) -> f32 {
 }
 
 /// Puts all on a page: a row a method, columns of lit pictures and of both maps, and below each map its scale.
-pub fn lay_out(
+pub(super) fn lay_out(
     arguments: &Arguments,
     rows: &[(&Column, Vec<Vec<u8>>)],
     refusals: &[Refusal],

@@ -15,13 +15,27 @@ pub use temporary::remove_unfinished;
 
 use hullform::error::visible;
 use hullform::{Error, Result};
+use std::fs;
+use std::io::{self, Write};
 use std::path::Path;
+use temporary::Temporary;
 
 /// Where a picture went, in words: by its whole path, since scripts are called from anywhere.
 pub fn wrote(path: &Path) -> String {
     let whole = std::path::absolute(path);
     let whole = whole.as_deref().unwrap_or(path);
     format!("wrote {}", visible(&whole.to_string_lossy()))
+}
+
+/// Puts a file with these bytes into the place of what is there, in a folder that is made: whoever looks sees all of the one or all of the other.
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder)?;
+    let temporary = Temporary::new(folder)?;
+    let mut file = temporary.file();
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    temporary.place(path, &mut temporary::still())
 }
 
 /// A file format, known by the extension of the file's name.

@@ -3,7 +3,7 @@
 use hullform::host::Area;
 
 /// The background's colour at the top and at the bottom, in linear light.
-const BACKGROUND: [[f32; 3]; 2] = [[0.62, 0.66, 0.70], [0.30, 0.32, 0.35]];
+pub const BACKGROUND: [[f32; 3]; 2] = [[0.62, 0.66, 0.70], [0.30, 0.32, 0.35]];
 
 /// Averages squares of `factor` x `factor` pixels in linear light and puts them before the background, which is all that there is outside of
 /// `area`.

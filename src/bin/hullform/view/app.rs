@@ -1,0 +1,353 @@
+//! The rim: winit's events in, frames out. Everything else is in values that know nothing of windows.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use hullform::ash::vk;
+use hullform::host::{Device, Instance, Shown, WindowSurface};
+use hullform::{Error, Result};
+use winit::application::ApplicationHandler;
+use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+use winit::window::{Window, WindowId};
+
+use super::Arguments;
+use super::canvas::{Canvas, Panels};
+use super::context::Context;
+use super::log::Log;
+use super::program::Program;
+use super::settings::Settings;
+use super::viewer::Viewer;
+use super::workers::Wake;
+use crate::gpu::Gpu;
+use crate::options::Global;
+
+/// Samples a pixel.
+const SAMPLES: u32 = 4;
+/// How often a frame that is being drawn is looked after.
+const GLANCE: Duration = Duration::from_millis(2);
+/// How long after a scene its costs are told.
+const SETTLED: Duration = Duration::from_millis(150);
+/// How often words about work are renewed.
+const PROGRESS: Duration = Duration::from_millis(120);
+
+/// Something happened beside the window.
+#[derive(Clone, Copy, Debug)]
+pub struct Woken;
+
+/// Opens the window and stays until it is closed.
+pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    let events = EventLoop::<Woken>::with_user_event().build();
+    let events = events.map_err(|error| no_display(&error.to_string()))?;
+    let mut app = App {
+        arguments,
+        global,
+        proxy: events.create_proxy(),
+        open: None,
+        result: Ok(()),
+    };
+    events
+        .run_app(&mut app)
+        .map_err(|error| no_display(&error.to_string()))?;
+    app.finish()
+}
+
+/// Why there is no window, and what to do without.
+fn no_display(words: &str) -> Error {
+    let words = words.lines().next().unwrap_or_default().trim();
+    Error::NoDisplay(format!(
+        "{words}; set DISPLAY or WAYLAND_DISPLAY to a display that runs, or draw into a file with `hullform render`"
+    ))
+}
+
+struct App<'a> {
+    arguments: &'a Arguments,
+    global: &'a Global,
+    proxy: EventLoopProxy<Woken>,
+    open: Option<Open>,
+    result: Result<()>,
+}
+
+/// What there is while the window is open. Dropped in this order: the window last.
+struct Open {
+    program: Program,
+    input: egui_winit::State,
+    panels: Panels,
+    /// When something is to be shown again, whatever comes.
+    due: Option<Instant>,
+    /// Whether something is to be shown as soon as the last frame is done.
+    wanted: bool,
+    /// When motion was advanced last.
+    advanced: Instant,
+    log: Log,
+    /// Where settings are written in the end.
+    settings: Option<PathBuf>,
+    instance: Instance,
+    window: Arc<Window>,
+}
+
+impl ApplicationHandler<Woken> for App<'_> {
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &mut self.open) {
+            open.wanted |= open.due.is_some_and(|due| due <= Instant::now());
+        }
+    }
+
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match Open::new(self.arguments, self.global, events, self.proxy.clone()) {
+            Ok(open) => self.open = Some(open),
+            Err(error) => self.end(events, Err(error)),
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, _: Woken) {
+        if let Some(open) = &mut self.open {
+            open.wanted = true;
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        match open.take(event) {
+            Ok(false) => {}
+            Ok(true) => self.end(events, Ok(())),
+            Err(error) => self.end(events, Err(error)),
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        match open.advance() {
+            Ok(true) => self.end(events, Ok(())),
+            Ok(false) => events.set_control_flow(open.flow()),
+            Err(error) => self.end(events, Err(error)),
+        }
+    }
+}
+
+impl App<'_> {
+    fn end(&mut self, events: &ActiveEventLoop, result: Result<()>) {
+        self.result = result;
+        events.exit();
+    }
+
+    /// Closes everything, and gives the validation layer the last word.
+    fn finish(self) -> Result<()> {
+        let App { open, result, .. } = self;
+        let closed = open.map_or(Ok(()), Open::close);
+        result.and(closed)
+    }
+}
+
+impl Open {
+    fn new(
+        arguments: &Arguments,
+        global: &Global,
+        events: &ActiveEventLoop,
+        proxy: EventLoopProxy<Woken>,
+    ) -> Result<Open> {
+        let file = super::settings::file().filter(|_| !arguments.fresh);
+        let settings = file.as_deref().map(Settings::read).unwrap_or_default();
+        let asked = arguments.size.map(|size| [size.width, size.height]);
+        let size = asked.or(settings.size).unwrap_or([1280, 800]);
+        let log = Log::new(arguments.log.as_deref())?;
+        let attributes = Window::default_attributes()
+            .with_title("hullform")
+            .with_inner_size(LogicalSize::new(size[0], size[1]))
+            .with_min_inner_size(LogicalSize::new(320, 240));
+        let window = events.create_window(attributes);
+        let window = Arc::new(window.map_err(|error| no_display(&error.to_string()))?);
+        let (instance, surface) = surface(&window, global.validation)?;
+        let device = Device::open_for(&instance, global.device.as_deref(), &surface)?;
+        let gpu = Gpu::of(instance.clone(), device, global)?;
+        let PhysicalSize { width, height } = window.inner_size();
+        let canvas = Canvas::new(&gpu.device, surface, [width, height], samples(&gpu.device))?;
+        let format = canvas.scene_format();
+        let context = Context::new(gpu, global, format, samples(canvas.device()))?;
+        let wake: Wake = Arc::new(move || {
+            // The loop has ended when this fails.
+            let _ = proxy.send_event(Woken);
+        });
+        let mut viewer = Viewer::default();
+        settings.apply(&mut viewer);
+        match arguments.models.is_empty() {
+            true => viewer.open([None]),
+            false => viewer.open(arguments.models.iter().cloned().map(Some)),
+        }
+        let shape = arguments.shape.clone();
+        let program = Program::new(viewer, canvas, context, shape, wake)?;
+        let input = egui_winit::State::new(
+            program.egui.clone(),
+            egui::ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            None,
+            Some(program.context.device().limits().max_image_dimension2_d as usize),
+        );
+        Ok(Open {
+            program,
+            input,
+            panels: Panels::default(),
+            due: None,
+            wanted: true,
+            advanced: Instant::now(),
+            log,
+            settings: file,
+            instance,
+            window,
+        })
+    }
+
+    /// Takes an event; whether that was the end.
+    fn take(&mut self, event: WindowEvent) -> Result<bool> {
+        match &event {
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => return Ok(true),
+            WindowEvent::RedrawRequested => {
+                self.wanted = true;
+                return Ok(false);
+            }
+            WindowEvent::DroppedFile(path) => {
+                self.program.viewer.open([Some(path.clone())]);
+            }
+            _ => {}
+        }
+        let response = self.input.on_window_event(&self.window, &event);
+        self.wanted |= response.repaint || matches!(event, WindowEvent::Resized(_));
+        Ok(false)
+    }
+
+    /// Shows a frame if one is wanted and the last one is done; whether the program is to end.
+    fn advance(&mut self) -> Result<bool> {
+        if !self.wanted || self.program.canvas.is_busy()? {
+            return Ok(false);
+        }
+        self.wanted = false;
+        self.due = None;
+        let PhysicalSize { width, height } = self.window.inner_size();
+        let size = [width, height];
+        if self.program.canvas.is_stale() || self.program.canvas.size() != size {
+            self.program.resize(size)?;
+        }
+        self.program.take_shot()?;
+        self.program.take()?;
+        self.program.read_off();
+        self.pass_time();
+        let input = self.input.take_egui_input(&self.window);
+        let output = self.program.panels(input);
+        self.program.start()?;
+        let delay = output
+            .viewport_output
+            .values()
+            .map(|own| own.repaint_delay)
+            .min();
+        self.input
+            .handle_platform_output(&self.window, output.platform_output);
+        self.panels.scale = output.pixels_per_point;
+        self.panels.primitives = self
+            .program
+            .egui
+            .tessellate(output.shapes, output.pixels_per_point);
+        self.panels.textures.append(output.textures_delta);
+        if self.program.grant()? {
+            return Ok(true);
+        }
+        let outcome = self.program.show(&self.panels)?;
+        self.panels.textures.clear();
+        let program = &self.program;
+        self.log.add(|| program.state());
+        self.wanted |= matches!(outcome.shown, Shown::NotYet | Shown::WindowChanged);
+        if outcome.scene {
+            // What the scene cost is told by the next frame.
+            self.program.egui.request_repaint_after(SETTLED);
+        }
+        let moving = self.program.viewer.is_moving() && outcome.shown != Shown::Hidden;
+        self.wanted |= moving || self.program.canvas.is_shooting();
+        let mut soon = delay.filter(|delay| *delay < Duration::from_secs(60));
+        if !self.program.busy().is_empty() {
+            soon = Some(soon.map_or(PROGRESS, |delay| delay.min(PROGRESS)));
+        }
+        if let Some(left) = self.program.viewer.notices.until_change() {
+            soon = Some(soon.map_or(left, |delay| delay.min(left)));
+        }
+        self.due = soon.map(|delay| Instant::now() + delay.max(GLANCE));
+        Ok(false)
+    }
+
+    fn pass_time(&mut self) {
+        let now = Instant::now();
+        let passed = now.duration_since(self.advanced).as_secs_f64();
+        self.advanced = now;
+        self.program.viewer.deform.pass(passed);
+    }
+
+    /// How long to sleep.
+    fn flow(&self) -> ControlFlow {
+        match (self.wanted, self.due) {
+            (true, _) => ControlFlow::WaitUntil(Instant::now() + GLANCE),
+            (false, Some(due)) => ControlFlow::WaitUntil(due),
+            (false, None) => ControlFlow::Wait,
+        }
+    }
+
+    fn close(self) -> Result<()> {
+        let scale = self.window.scale_factor();
+        let size: LogicalSize<u32> = self.window.inner_size().to_logical(scale);
+        let size = Some([size.width, size.height]).filter(|size| !size.contains(&0));
+        if let Some(file) = &self.settings {
+            let settings = Settings::of_viewer(&self.program.viewer, size);
+            if let Err(error) = settings.write(file) {
+                tracing::warn!(
+                    "{}: {error}; the window will not be as it was left",
+                    file.display()
+                );
+            }
+        }
+        let Open {
+            program, instance, ..
+        } = self;
+        program.close()?;
+        crate::gpu::check(&instance)
+    }
+}
+
+/// An instance that draws to windows, and the window's surface.
+fn surface(window: &Window, validation: bool) -> Result<(Instance, WindowSurface)> {
+    let handle = |error: &dyn std::fmt::Display| no_display(&error.to_string());
+    let display = window
+        .display_handle()
+        .map_err(|error| handle(&error))?
+        .as_raw();
+    let raw = window
+        .window_handle()
+        .map_err(|error| handle(&error))?
+        .as_raw();
+    let names = ash_window::enumerate_required_extensions(display);
+    let names = names.map_err(|error| handle(&error))?;
+    let names: Vec<&'static std::ffi::CStr> = names
+        .iter()
+        // SAFETY: ash-window's names are static C strings.
+        .map(|&name| unsafe { std::ffi::CStr::from_ptr(name) })
+        .collect();
+    let instance = Instance::with_extensions(validation, &names)?;
+    // SAFETY: the instance has the extensions for this display; the window outlives the surface, since it is dropped last.
+    let made =
+        unsafe { ash_window::create_surface(instance.entry(), instance.raw(), display, raw, None) };
+    let made = made.map_err(super::canvas::vulkan("creating the window's surface"))?;
+    // SAFETY: it was just made from this instance.
+    let surface = unsafe { WindowSurface::new(&instance, made) };
+    Ok((instance, surface))
+}
+
+/// As many samples as the device has, up to four.
+fn samples(device: &Device) -> u32 {
+    let limits = device.limits();
+    let able = limits.framebuffer_color_sample_counts & limits.framebuffer_depth_sample_counts;
+    let fits = |count: &u32| able.contains(vk::SampleCountFlags::from_raw(*count));
+    [SAMPLES, 2].into_iter().find(fits).unwrap_or(1)
+}

@@ -1,0 +1,447 @@
+//! The window's picture: the scene, which is drawn when it has changed, and the panels over it.
+
+use ash::vk;
+use egui_ash_renderer::{Options, Renderer};
+use hullform::ash;
+use hullform::host::{Device, Image, OffscreenTarget, Pacing, Shown, Swapchain, WindowSurface};
+use hullform::{Error, Result};
+
+use super::picture::swizzled;
+use super::shot::Shot;
+use super::viewport::Area;
+
+/// Behind everything, where nothing else is.
+const BLACK: vk::ClearColorValue = vk::ClearColorValue {
+    float32: [0.0, 0.0, 0.0, 1.0],
+};
+
+/// What egui wants drawn.
+#[derive(Default)]
+pub struct Panels {
+    /// What changed of its textures.
+    pub textures: egui::TexturesDelta,
+    /// Triangles.
+    pub primitives: Vec<egui::ClippedPrimitive>,
+    /// Pixels of a point.
+    pub scale: f32,
+}
+
+/// A window's images, the scene's picture, and what draws panels.
+pub struct Canvas {
+    /// First to go: it is made of the device.
+    panels: Option<Renderer>,
+    pass: vk::RenderPass,
+    framebuffers: Vec<vk::Framebuffer>,
+    /// For egui's textures.
+    pool: vk::CommandPool,
+    target: Option<OffscreenTarget>,
+    samples: u32,
+    /// A picture of the window that was asked for.
+    shot: Option<Shot>,
+    /// Textures that egui has given up, and that the last frame may still show.
+    unused: Vec<egui::TextureId>,
+    swapchain: Swapchain,
+    device: Device,
+}
+
+impl Canvas {
+    /// The canvas of a window of this size in pixels, with so many samples a pixel.
+    pub fn new(
+        device: &Device,
+        surface: WindowSurface,
+        size: [u32; 2],
+        samples: u32,
+    ) -> Result<Canvas> {
+        let swapchain = Swapchain::new(device, surface, size, Pacing::Display)?;
+        let mut canvas = Canvas {
+            panels: None,
+            pass: vk::RenderPass::null(),
+            framebuffers: Vec::new(),
+            pool: vk::CommandPool::null(),
+            target: None,
+            samples,
+            shot: None,
+            unused: Vec::new(),
+            swapchain,
+            device: device.clone(),
+        };
+        canvas.make_pass()?;
+        canvas.make_pool()?;
+        canvas.make_panels()?;
+        canvas.make_images()?;
+        Ok(canvas)
+    }
+
+    /// The images' size in pixels; zero while the window is minimised.
+    pub fn size(&self) -> [u32; 2] {
+        let extent = self.swapchain.extent();
+        [extent.width, extent.height]
+    }
+
+    /// The format of the scene's picture: the window's, encoded by the device.
+    pub fn scene_format(&self) -> vk::Format {
+        encoded(self.swapchain.format())
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// The scene's picture.
+    pub fn target(&self) -> Option<&OffscreenTarget> {
+        self.target.as_ref()
+    }
+
+    /// Draws only a part of the scene's picture from now on.
+    pub fn confine(&mut self, area: Area) {
+        if let Some(target) = &mut self.target {
+            target.confine(area.in_picture());
+        }
+    }
+
+    /// How the display is paced.
+    pub fn mode(&self) -> vk::PresentModeKHR {
+        self.swapchain.mode()
+    }
+
+    /// Changes that, at once.
+    pub fn pace(&mut self, pacing: Pacing) {
+        self.swapchain.pace(pacing);
+    }
+
+    /// Whether the window has changed, so that [`resize`](Self::resize) is due.
+    pub fn is_stale(&self) -> bool {
+        self.swapchain.is_stale()
+    }
+
+    /// Whether a frame is being drawn.
+    pub fn is_busy(&self) -> Result<bool> {
+        self.swapchain.is_busy()
+    }
+
+    /// Waits for it.
+    pub fn wait(&self) -> Result<()> {
+        self.swapchain.wait()
+    }
+
+    /// Goes along with a window of this size.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
+        self.swapchain.wait()?;
+        self.destroy_framebuffers();
+        self.shot = None;
+        self.swapchain.resize(size)?;
+        self.make_images()
+    }
+
+    /// Draws the scene anew, if `scene` is given, and then the window: the scene's area, and panels over it. Only when it is not busy.
+    pub fn show(
+        &mut self,
+        panels: &Panels,
+        area: Area,
+        scene: Option<&mut dyn FnMut(vk::CommandBuffer, &OffscreenTarget) -> Result<()>>,
+    ) -> Result<Shown> {
+        self.take_textures(panels)?;
+        let (Some(target), Some(renderer)) = (&self.target, &mut self.panels) else {
+            return Ok(Shown::Hidden);
+        };
+        let (device, pass, shot) = (self.device.raw(), self.pass, self.shot.as_ref());
+        let framebuffers = &self.framebuffers;
+        self.swapchain.frame(|cmd, image| {
+            if let Some(scene) = scene {
+                scene(cmd, target)?;
+            }
+            // SAFETY: recording on the device that made everything; the target's pass has ended, and left its picture to be copied.
+            unsafe {
+                cmd_copy(device, cmd, target.image(), image, area);
+                cmd_begin(device, cmd, pass, framebuffers[image.number], image.extent);
+            }
+            let drawn = renderer.cmd_draw(cmd, image.extent, panels.scale, &panels.primitives);
+            // SAFETY: inside the pass that began above, which leaves the image to the display.
+            unsafe {
+                device.cmd_end_render_pass(cmd);
+                if let Some(shot) = shot.filter(|shot| shot.fits(image.extent)) {
+                    shot.cmd_take(device, cmd, image);
+                }
+            }
+            drawn.map_err(of_panels)
+        })
+    }
+
+    /// Has the next frame taken as a picture; whether the display allows it.
+    pub fn shoot(&mut self) -> Result<bool> {
+        let extent = self.swapchain.extent();
+        if !self.swapchain.can_be_read() || extent.width == 0 || extent.height == 0 {
+            return Ok(false);
+        }
+        self.shot = Some(Shot::new(&self.device, extent)?);
+        Ok(true)
+    }
+
+    /// The picture that was taken, RGBA with its size; once its frame is done.
+    pub fn take_shot(&mut self) -> Option<([u32; 2], Vec<u8>)> {
+        let shot = self.shot.take()?;
+        let pixels = swizzled(shot.bytes(), self.swapchain.format());
+        Some((self.size(), pixels))
+    }
+
+    /// Whether one is under way.
+    pub fn is_shooting(&self) -> bool {
+        self.shot.is_some()
+    }
+
+    /// Brings egui's textures to the device, and gives those back that no frame shows any more.
+    fn take_textures(&mut self, panels: &Panels) -> Result<()> {
+        let Some(renderer) = &mut self.panels else {
+            return Ok(());
+        };
+        let unused = std::mem::take(&mut self.unused);
+        renderer.free_textures(&unused).map_err(of_panels)?;
+        self.unused.clone_from(&panels.textures.free);
+        if panels.textures.set.is_empty() {
+            return Ok(());
+        }
+        let queue = self.device.queue();
+        let set = renderer.set_textures(*queue, self.pool, &panels.textures.set);
+        set.map_err(of_panels)
+    }
+
+    fn make_images(&mut self) -> Result<()> {
+        let [width, height] = self.size();
+        self.target = None;
+        if width == 0 || height == 0 {
+            return Ok(());
+        }
+        let (device, format) = (&self.device, self.scene_format());
+        self.target = Some(OffscreenTarget::with_format(
+            device,
+            width,
+            height,
+            self.samples,
+            format,
+        )?);
+        for view in self.swapchain.views() {
+            let views = [view];
+            let info = vk::FramebufferCreateInfo::default()
+                .render_pass(self.pass)
+                .attachments(&views)
+                .width(width)
+                .height(height)
+                .layers(1);
+            // SAFETY: pass and view are of this device, and of one format.
+            let made = unsafe { self.device.raw().create_framebuffer(&info, None) };
+            self.framebuffers
+                .push(made.map_err(vulkan("vkCreateFramebuffer"))?);
+        }
+        Ok(())
+    }
+
+    fn make_pool(&mut self) -> Result<()> {
+        let info = vk::CommandPoolCreateInfo::default()
+            .queue_family_index(self.device.queue_family())
+            .flags(vk::CommandPoolCreateFlags::TRANSIENT);
+        // SAFETY: the device is live.
+        self.pool = unsafe { self.device.raw().create_command_pool(&info, None) }
+            .map_err(vulkan("vkCreateCommandPool"))?;
+        Ok(())
+    }
+
+    fn make_panels(&mut self) -> Result<()> {
+        let format = self.swapchain.format();
+        let options = Options {
+            srgb_framebuffer: encoded(format) == format,
+            ..Options::default()
+        };
+        let info = self.device.info();
+        let made = Renderer::with_default_allocator(
+            self.device.instance().raw(),
+            info.physical,
+            self.device.raw().clone(),
+            self.pass,
+            options,
+        );
+        self.panels = Some(made.map_err(of_panels)?);
+        Ok(())
+    }
+
+    fn make_pass(&mut self) -> Result<()> {
+        use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
+        let colour = vk::AttachmentDescription::default()
+            .format(self.swapchain.format())
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .load_op(vk::AttachmentLoadOp::LOAD)
+            .store_op(vk::AttachmentStoreOp::STORE)
+            .initial_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
+            .final_layout(vk::ImageLayout::PRESENT_SRC_KHR);
+        let attachments = [colour];
+        let references = [vk::AttachmentReference {
+            attachment: 0,
+            layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+        }];
+        let subpasses = [vk::SubpassDescription::default()
+            .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+            .color_attachments(&references)];
+        let dependencies = [vk::SubpassDependency::default()
+            .src_subpass(vk::SUBPASS_EXTERNAL)
+            .dst_subpass(0)
+            .src_stage_mask(Stage::TRANSFER)
+            .src_access_mask(Access::TRANSFER_WRITE)
+            .dst_stage_mask(Stage::COLOR_ATTACHMENT_OUTPUT)
+            .dst_access_mask(Access::COLOR_ATTACHMENT_READ | Access::COLOR_ATTACHMENT_WRITE)];
+        let info = vk::RenderPassCreateInfo::default()
+            .attachments(&attachments)
+            .subpasses(&subpasses)
+            .dependencies(&dependencies);
+        // SAFETY: the device is live.
+        self.pass = unsafe { self.device.raw().create_render_pass(&info, None) }
+            .map_err(vulkan("vkCreateRenderPass"))?;
+        Ok(())
+    }
+
+    fn destroy_framebuffers(&mut self) {
+        for framebuffer in self.framebuffers.drain(..) {
+            // SAFETY: ours; the last frame is done.
+            unsafe { self.device.raw().destroy_framebuffer(framebuffer, None) };
+        }
+    }
+}
+
+impl Drop for Canvas {
+    fn drop(&mut self) {
+        if self.swapchain.wait().is_err() && self.device.is_hung() {
+            return;
+        }
+        self.panels = None;
+        self.shot = None;
+        self.destroy_framebuffers();
+        // SAFETY: ours, and in no use any more.
+        unsafe {
+            self.device.raw().destroy_render_pass(self.pass, None);
+            self.device.raw().destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+/// The format with the same bytes that the device encodes to.
+fn encoded(format: vk::Format) -> vk::Format {
+    match format {
+        vk::Format::B8G8R8A8_UNORM => vk::Format::B8G8R8A8_SRGB,
+        vk::Format::R8G8B8A8_UNORM => vk::Format::R8G8B8A8_SRGB,
+        vk::Format::A8B8G8R8_UNORM_PACK32 => vk::Format::A8B8G8R8_SRGB_PACK32,
+        other => other,
+    }
+}
+
+/// Copies the scene's area to where it stands in the window, bytes as they are, and leaves the image ready for panels.
+///
+/// # Safety
+/// `cmd` is recording on `device` outside of a render pass; the picture is in the layout `TRANSFER_SRC_OPTIMAL`, and the area in both.
+unsafe fn cmd_copy(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    picture: vk::Image,
+    image: Image,
+    area: Area,
+) {
+    use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
+    let range = vk::ImageSubresourceRange::default()
+        .aspect_mask(vk::ImageAspectFlags::COLOR)
+        .level_count(1)
+        .layer_count(1);
+    let barrier = |old, access| {
+        vk::ImageMemoryBarrier::default()
+            .src_access_mask(access)
+            .dst_access_mask(Access::TRANSFER_WRITE)
+            .old_layout(old)
+            .new_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .image(image.raw)
+            .subresource_range(range)
+    };
+    let layers = vk::ImageSubresourceLayers::default()
+        .aspect_mask(vk::ImageAspectFlags::COLOR)
+        .layer_count(1);
+    let offset = vk::Offset3D {
+        x: area.x as i32,
+        y: area.y as i32,
+        z: 0,
+    };
+    let region = vk::ImageCopy::default()
+        .src_subresource(layers)
+        .src_offset(offset)
+        .dst_subresource(layers)
+        .dst_offset(offset)
+        .extent(vk::Extent3D {
+            width: area.width,
+            height: area.height,
+            depth: 1,
+        });
+    let none = vk::DependencyFlags::empty();
+    let to = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+    // SAFETY: this function's contract. The first barrier begins with the stages that wait for the display to give the image back.
+    unsafe {
+        let first = [barrier(vk::ImageLayout::UNDEFINED, Access::empty())];
+        let waited = Stage::TRANSFER | Stage::COLOR_ATTACHMENT_OUTPUT;
+        device.cmd_pipeline_barrier(cmd, waited, Stage::TRANSFER, none, &[], &[], &first);
+        device.cmd_clear_color_image(cmd, image.raw, to, &BLACK, &[range]);
+        if area.width == 0 || area.height == 0 {
+            return;
+        }
+        let second = [barrier(to, Access::TRANSFER_WRITE)];
+        device.cmd_pipeline_barrier(
+            cmd,
+            Stage::TRANSFER,
+            Stage::TRANSFER,
+            none,
+            &[],
+            &[],
+            &second,
+        );
+        let from = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        device.cmd_copy_image(cmd, picture, from, image.raw, to, &[region]);
+    }
+}
+
+/// # Safety
+/// `cmd` is recording on `device` outside of a render pass; pass and framebuffer belong together.
+unsafe fn cmd_begin(
+    device: &ash::Device,
+    cmd: vk::CommandBuffer,
+    pass: vk::RenderPass,
+    framebuffer: vk::Framebuffer,
+    extent: vk::Extent2D,
+) {
+    let info = vk::RenderPassBeginInfo::default()
+        .render_pass(pass)
+        .framebuffer(framebuffer)
+        .render_area(vk::Rect2D {
+            offset: vk::Offset2D::default(),
+            extent,
+        });
+    // SAFETY: this function's contract.
+    unsafe { device.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE) };
+}
+
+/// What drawing panels ran into.
+fn of_panels(error: egui_ash_renderer::RendererError) -> Error {
+    use egui_ash_renderer::RendererError;
+    match error {
+        RendererError::Vulkan(code) => vulkan("drawing panels")(code),
+        other => Error::Refused(format!("panels cannot be drawn: {other}")),
+    }
+}
+
+/// For `map_err`: a failure of a Vulkan call.
+pub fn vulkan(call: &'static str) -> impl Fn(vk::Result) -> Error {
+    move |code| {
+        let result = format!("{code:?}");
+        match code {
+            vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { call, result },
+            vk::Result::ERROR_OUT_OF_HOST_MEMORY | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => {
+                Error::OutOfMemory { call, result }
+            }
+            _ => Error::Vulkan { call, result },
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! What all surfaces of the window share on the device: layouts, pipelines with their cache on disk, and how a model gets there.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use hullform::Result;
+use hullform::ash::vk;
+use hullform::gpu::{
+    Backend, CachePipelines, DrawList, Layout, PipelineOptions, Pipelines, Residence, Slots,
+    SurfaceOptions, Target, TessellatedSurface,
+};
+use hullform::host::{Device, OffscreenTarget, Owned, Style};
+use hullform::mesh::{ControlMesh, Model};
+use hullform::method::{MethodOptions, Prepared, method, prepare_by_default};
+
+use crate::gpu::Gpu;
+use crate::options::Global;
+
+/// How a model is prepared and kept on the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recipe {
+    /// The method; None for the one that draws the model's limit, or comes near.
+    pub method: Option<&'static str>,
+    /// Who cuts patches.
+    pub backend: Backend,
+    /// Where control points live.
+    pub residence: Residence,
+    /// Whether vertices with an odd number of bits are moved, so that cracks show.
+    pub amplify: bool,
+}
+
+/// What pipelines are for: the shaders of the passes, and how they are drawn.
+pub type Key = (Vec<&'static str>, Style);
+
+/// What surfaces share. Fields are dropped in this order.
+pub struct Context {
+    pipelines: Mutex<Vec<(Key, Arc<Owned<Pipelines>>)>>,
+    layout: Owned<Layout>,
+    /// A picture like those that are drawn into, which pipelines are made for: it stays when the window changes.
+    mould: OffscreenTarget,
+    /// The device.
+    pub gpu: Gpu,
+    /// Options of the command line.
+    pub global: Global,
+}
+
+/// A model on the device, as one recipe has it.
+pub struct Drawn {
+    /// What is drawn.
+    pub surface: Owned<TessellatedSurface>,
+    /// Fills the cache of control points, where there is one.
+    pub cache: Option<Owned<CachePipelines>>,
+    /// What a frame draws, and for which levels it was decided.
+    pub list: Option<DrawList>,
+    /// Seconds to prepare it, and to bring it to the device.
+    pub seconds: [f64; 2],
+    /// Why methods that come before the one that did it refused.
+    pub refusals: Vec<String>,
+}
+
+impl Drawn {
+    /// What pipelines must be for to draw it.
+    pub fn key(&self, style: Style) -> Key {
+        let passes = self.surface.prepared().passes.iter();
+        (passes.map(|pass| pass.shader).collect(), style)
+    }
+}
+
+impl Context {
+    /// What surfaces share that are drawn in pictures of a format, with so many samples a pixel.
+    pub fn new(gpu: Gpu, global: &Global, format: vk::Format, samples: u32) -> Result<Context> {
+        let device = &gpu.device;
+        // SAFETY: the device is live.
+        let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
+        Ok(Context {
+            pipelines: Mutex::default(),
+            // SAFETY: the layout was just made by this device.
+            layout: unsafe { Owned::new(device, layout) },
+            mould: OffscreenTarget::with_format(device, 1, 1, samples, format)?,
+            global: global.clone(),
+            gpu,
+        })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.gpu.device
+    }
+
+    /// The layouts of all surfaces.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// A picture like those that are drawn into.
+    pub fn mould(&self) -> &OffscreenTarget {
+        &self.mould
+    }
+
+    /// Prepares a model and brings it to the device. Takes its time: for workers.
+    pub fn place(&self, model: &Model, recipe: Recipe) -> Result<Drawn> {
+        let started = Instant::now();
+        let options = MethodOptions::default();
+        let (prepared, refusals) = match recipe.method {
+            Some(name) => (method(name)?.prepare(model, options)?, Vec::new()),
+            None => prepare_by_default(model, options)?,
+        };
+        let seconds = started.elapsed().as_secs_f64();
+        let started = Instant::now();
+        let mut drawn = self.upload(model, prepared, recipe)?;
+        drawn.seconds = [seconds, started.elapsed().as_secs_f64()];
+        drawn.refusals = refusals.iter().map(ToString::to_string).collect();
+        Ok(drawn)
+    }
+
+    fn upload(&self, model: &Model, prepared: Prepared, recipe: Recipe) -> Result<Drawn> {
+        let options = SurfaceOptions {
+            backend: recipe.backend,
+            residence: recipe.residence,
+            ring_bytes: self.global.ring_bytes,
+            slots: Slots::Host,
+            greatest_level: greatest_level(recipe.backend),
+            rounds: 2,
+            views: 2,
+            amplify_cracks: recipe.amplify,
+            ..SurfaceOptions::default()
+        };
+        let (device, layout) = (self.device(), self.layout());
+        let workarounds = &self.gpu.workarounds;
+        // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
+        let surface = unsafe {
+            let allocator = &mut *device.allocator();
+            let raw = device.raw();
+            TessellatedSurface::new(
+                raw,
+                allocator,
+                layout,
+                model,
+                prepared,
+                workarounds,
+                options,
+            )
+        }?;
+        // SAFETY: it was just made by this device.
+        let mut surface = unsafe { Owned::new(device, surface) };
+        let made = (recipe.residence == Residence::Cache).then(|| {
+            let (cache, prepared) = (self.gpu.pipeline_cache(), surface.prepared());
+            // SAFETY: all of one live device.
+            unsafe { CachePipelines::new(device.raw(), layout, cache, prepared) }
+        });
+        // SAFETY: as above.
+        let own = |pipelines| unsafe { Owned::new(device, pipelines) };
+        let cache = made.transpose()?.map(own);
+        device.submit(|cmd| {
+            // SAFETY: recording on the device that made everything, outside of a render pass.
+            unsafe { surface.cmd_upload(device.raw(), cmd) };
+            Ok(())
+        })?;
+        // SAFETY: the upload has been waited for.
+        unsafe { surface.finish_upload(device.raw(), &mut device.allocator()) };
+        Ok(Drawn {
+            surface,
+            cache,
+            list: None,
+            seconds: [0.0; 2],
+            refusals: Vec::new(),
+        })
+    }
+
+    /// Pipelines that have been made.
+    pub fn ready(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
+        let all = self.kept();
+        let found = all.iter().find(|(other, _)| other == key);
+        found.map(|(_, pipelines)| pipelines.clone())
+    }
+
+    /// Makes pipelines, unless they are there. Takes its time: for workers.
+    pub fn make(&self, prepared: &Prepared, style: Style) -> Result<Arc<Owned<Pipelines>>> {
+        let shaders = prepared.passes.iter().map(|pass| pass.shader);
+        let key = (shaders.collect(), style);
+        if let Some(ready) = self.ready(&key) {
+            return Ok(ready);
+        }
+        let options = PipelineOptions {
+            target: Target {
+                samples: self.mould.samples(),
+                cull: style.cull,
+                compare: style.compare,
+                ..Target::render_pass(self.mould.render_pass())
+            },
+            backend: style.backend,
+            residence: style.residence,
+            spacing: style.spacing,
+            fill: style.fill,
+            fragment: None,
+            layout: None,
+        };
+        let (device, cache) = (self.device(), self.gpu.pipeline_cache());
+        // SAFETY: all of one live device.
+        let made = unsafe { Pipelines::new(device.raw(), &self.layout, cache, prepared, &options) };
+        // SAFETY: they were just made by this device.
+        let made = Arc::new(unsafe { Owned::new(device, made?) });
+        self.kept().push((key, made.clone()));
+        Ok(made)
+    }
+
+    /// Writes what pipelines were made of, for the next start.
+    pub fn save_cache(&self) {
+        // A device that cannot tell has other troubles, of which others tell.
+        if let Err(error) = self.gpu.keep_pipelines() {
+            tracing::info!("{error}");
+        }
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Vec<(Key, Arc<Owned<Pipelines>>)>> {
+        self.pipelines
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The greatest level that a back-end draws.
+pub fn greatest_level(backend: Backend) -> f32 {
+    match backend {
+        Backend::Geometry => 32.0,
+        Backend::Tessellator | Backend::Pattern => 64.0,
+    }
+}
+
+/// A mesh under another scheme, of triangles where that takes them.
+pub fn under_scheme(
+    mesh: ControlMesh,
+    scheme: hullform::mesh::Scheme,
+    how: crate::options::Triangulate,
+) -> Result<ControlMesh> {
+    let polygons = mesh.faces().any(|face| face.len() > 3);
+    let mesh = match scheme.is_triangular() && polygons {
+        true => hullform::mesh::triangulated(&mesh, how.into())?,
+        false => mesh,
+    };
+    mesh.with_scheme(scheme)
+}

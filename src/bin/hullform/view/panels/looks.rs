@@ -1,0 +1,121 @@
+//! What is shown, how it is cut, and what it is compared with.
+
+use egui::{Slider, Ui};
+use hullform::gpu::{Backend, Residence};
+use hullform::tessellation::Spacing;
+
+use super::super::command::{BACKENDS, Command, SCHEMES, SHADINGS, methods};
+use super::super::context::greatest_level;
+use super::super::orbit::Preset;
+use super::super::viewer::{Beside, Cull, ErrorKind, Viewer};
+use super::{choice, heading, row};
+
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
+    heading(ui, "look");
+    camera(ui, viewer);
+    let all: Vec<_> = SHADINGS
+        .iter()
+        .map(|&(s, words)| (s, words.to_string()))
+        .collect();
+    choice(ui, "colours", &mut viewer.look.shading, &all);
+    row(ui, "bumps", |ui| {
+        let slider = Slider::new(&mut viewer.look.displace, -0.1..=0.1);
+        ui.add(slider.fixed_decimals(3));
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.toggle_value(&mut viewer.look.wireframe, "wires");
+        ui.toggle_value(&mut viewer.look.cage, "cage");
+        ui.toggle_value(&mut viewer.look.numbers, "numbers");
+    });
+    heading(ui, "cut");
+    cut(ui, viewer);
+    heading(ui, "compare");
+    compare(ui, viewer);
+}
+
+fn camera(ui: &mut Ui, viewer: &mut Viewer) {
+    ui.horizontal_wrapped(|ui| {
+        let presets = [
+            ("fit", Command::Fit),
+            ("front", Command::Look(Preset::Front)),
+            ("side", Command::Look(Preset::Side)),
+            ("top", Command::Look(Preset::Top)),
+            ("¾", Command::Look(Preset::ThreeQuarter)),
+        ];
+        for (words, command) in presets {
+            if ui.small_button(words).clicked() {
+                viewer.obey(command);
+            }
+        }
+        ui.toggle_value(&mut viewer.orbit.orthographic, "parallel");
+    });
+}
+
+fn cut(ui: &mut Ui, viewer: &mut Viewer) {
+    let cutting = &mut viewer.cutting;
+    let name = |method: Option<&'static str>| method.unwrap_or("by model").to_string();
+    let all: Vec<_> = methods().into_iter().map(|m| (m, name(m))).collect();
+    choice(ui, "method", &mut cutting.method, &all);
+    let name = |scheme: Option<hullform::mesh::Scheme>| {
+        scheme.map_or("by model".to_string(), |scheme| scheme.name().to_string())
+    };
+    let all = SCHEMES.map(|scheme| (scheme, name(scheme)));
+    choice(ui, "scheme", &mut cutting.scheme, &all);
+    let all = BACKENDS.map(|backend| (backend, backend.name().to_string()));
+    choice(ui, "back-end", &mut cutting.backend, &all);
+    if cutting.backend == Backend::Geometry {
+        cutting.level = cutting.level.min(greatest_level(Backend::Geometry));
+    }
+    let all = [Residence::Cache, Residence::Ring].map(|r| (r, r.name().to_string()));
+    choice(ui, "residence", &mut cutting.residence, &all);
+    let all = [Spacing::FractionalEven, Spacing::Equal].map(|s| (s, s.name().to_string()));
+    choice(ui, "spacing", &mut cutting.spacing, &all);
+    let most = greatest_level(cutting.backend);
+    let level = row(ui, "level", |ui| {
+        let slider = Slider::new(&mut cutting.level, 1.0..=most).logarithmic(true);
+        ui.add(slider.max_decimals(2))
+    });
+    viewer.places.insert("level", level.rect);
+    row(ui, "adaptive", |ui| {
+        let mut on = cutting.pixels.is_some();
+        ui.checkbox(&mut on, "");
+        cutting.pixels = on.then(|| cutting.pixels.unwrap_or(8.0));
+        if let Some(pixels) = &mut cutting.pixels {
+            let slider = Slider::new(pixels, 1.0..=64.0).logarithmic(true);
+            ui.spacing_mut().slider_width = 70.0;
+            ui.add(slider.fixed_decimals(0).suffix(" px"));
+        }
+    });
+    let all = [Cull::None, Cull::Back, Cull::Front].map(|cull| (cull, cull.name().to_string()));
+    choice(ui, "culling", &mut cutting.cull, &all);
+    let mut frozen = viewer.frozen.is_some();
+    ui.horizontal_wrapped(|ui| {
+        ui.toggle_value(&mut frozen, "freeze")
+            .on_hover_text("cut by this camera, look with another");
+        ui.toggle_value(&mut viewer.cutting.amplify, "amplify cracks");
+    });
+    if frozen != viewer.frozen.is_some() {
+        viewer.obey(Command::Freeze);
+    }
+}
+
+fn compare(ui: &mut Ui, viewer: &mut Viewer) {
+    let compare = &mut viewer.compare;
+    let all = [
+        (Beside::Alone, "alone".to_string()),
+        (Beside::Split, "split".to_string()),
+        (Beside::SideBySide, "side by side".to_string()),
+    ];
+    choice(ui, "beside", &mut compare.beside, &all);
+    let name = |method: Option<&'static str>| method.unwrap_or("by model").to_string();
+    let all: Vec<_> = methods().into_iter().map(|m| (m, name(m))).collect();
+    ui.add_enabled_ui(compare.beside != Beside::Alone, |ui| {
+        choice(ui, "with", &mut compare.other, &all);
+    });
+    let all = [
+        (None, "none".to_string()),
+        (Some(ErrorKind::Position), "position".to_string()),
+        (Some(ErrorKind::Normal), "normal".to_string()),
+    ];
+    choice(ui, "error map", &mut compare.map, &all);
+}

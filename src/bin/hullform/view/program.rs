@@ -1,0 +1,511 @@
+//! The program behind the window: it starts what is needed of what the viewer wants, takes what is ready, and draws what has changed.
+
+mod saves;
+mod start;
+mod state;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::DVec2;
+use hullform::host::Shown;
+use hullform::mesh::{ControlMesh, Model};
+use hullform::{Error, Result};
+
+use super::canvas::{Canvas, Panels};
+use super::clipboard::Clipboard;
+use super::context::{Context, Drawn, Key};
+use super::errors::{Legend, Measured, Subject};
+use super::overlay::Overlay;
+use super::panels::{self, Status};
+use super::part::Wanted;
+use super::probe::{Found, Ray};
+use super::readings::Readings;
+use super::stage::{Side, Stage, Staged};
+use super::viewer::{Viewer, Wish};
+use super::watch::{self, Watch};
+use super::workers::{Wake, Workers};
+use crate::options::Shape;
+
+/// What workers bring.
+pub enum Done {
+    /// A mesh was read.
+    Read(u64, Result<ControlMesh>),
+    /// A part was brought to the device.
+    Built(u64, Wanted, Result<(Arc<Model>, Vec<Drawn>)>),
+    /// Pipelines were made.
+    Piped(Key, Result<()>),
+    /// A surface was captured.
+    Measured(Box<Subject>, Result<Arc<Measured>>),
+    /// Its errors are known.
+    Compared(Result<()>),
+    /// Something was saved, in words.
+    Saved(Result<String>),
+}
+
+/// What is being worked on.
+#[derive(Default)]
+struct Running {
+    read: Vec<u64>,
+    built: Vec<(u64, Wanted)>,
+    piped: Vec<Key>,
+    measured: Option<Subject>,
+    compared: Option<Arc<Measured>>,
+    saved: usize,
+}
+
+/// What failed, and is not tried again before something changes.
+#[derive(Default)]
+struct Failed {
+    built: Vec<(u64, Wanted)>,
+    piped: Vec<Key>,
+    measured: Vec<Subject>,
+}
+
+/// The program behind a window.
+pub struct Program {
+    /// What is shown.
+    pub viewer: Viewer,
+    /// What was measured.
+    pub readings: Readings,
+    /// egui's own state.
+    pub egui: egui::Context,
+    pub(super) stage: Stage,
+    pub(super) canvas: Canvas,
+    pub(super) context: Arc<Context>,
+    pub(super) workers: Workers<Done>,
+    pub(super) shape: Shape,
+    watch: Watch,
+    running: Running,
+    failed: Failed,
+    kept: Vec<Arc<Measured>>,
+    clipboard: Clipboard,
+    /// The command line that was copied last.
+    pub copied: Option<String>,
+    probe: Option<[f64; 2]>,
+    found: Option<Found>,
+    /// What the scene's picture shows.
+    drawn: Option<Drawing>,
+    fresh: bool,
+}
+
+/// What a picture of the scene depends on.
+#[derive(Clone, PartialEq)]
+struct Drawing {
+    look: super::viewer::Look,
+    cutting: super::viewer::Cutting,
+    compare: super::viewer::Compare,
+    orbit: super::orbit::Orbit,
+    frozen: Option<super::orbit::Orbit>,
+    selection: super::selection::Selection,
+    sides: Vec<Side>,
+    parts: Vec<(u64, u64, u64)>,
+    legend: Option<Legend>,
+    ready: usize,
+}
+
+/// What became of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Whether it was shown.
+    pub shown: Shown,
+    /// Whether the scene was drawn anew.
+    pub scene: bool,
+}
+
+impl Program {
+    /// A program that shows these models.
+    pub fn new(
+        viewer: Viewer,
+        canvas: Canvas,
+        context: Context,
+        shape: Shape,
+        wake: Wake,
+    ) -> Result<Program> {
+        let egui = egui::Context::default();
+        panels::dress(&egui);
+        Ok(Program {
+            stage: Stage::new(&context)?,
+            context: Arc::new(context),
+            readings: Readings::default(),
+            running: Running::default(),
+            failed: Failed::default(),
+            kept: Vec::new(),
+            clipboard: Clipboard::default(),
+            copied: None,
+            probe: None,
+            found: None,
+            drawn: None,
+            fresh: true,
+            egui,
+            viewer,
+            canvas,
+            shape,
+            watch: Watch::new(wake.clone()),
+            workers: Workers::new(wake),
+        })
+    }
+
+    /// Takes what workers have brought, when nothing is drawn; whether there was anything.
+    pub fn take(&mut self) -> Result<bool> {
+        self.take_changes();
+        let done = self.workers.done();
+        let any = !done.is_empty();
+        for done in done {
+            self.take_one(done)?;
+        }
+        Ok(any)
+    }
+
+    /// Has models read again whose files have changed.
+    fn take_changes(&mut self) {
+        let changed = self.watch.changed();
+        for part in &mut self.viewer.parts {
+            let place = part.file().and_then(watch::place);
+            part.unread |= place.is_some_and(|place| changed.contains(&place));
+        }
+        let files = self.viewer.parts.iter().filter_map(|part| part.file());
+        self.watch.look_after(files);
+    }
+
+    fn take_one(&mut self, done: Done) -> Result<()> {
+        match done {
+            Done::Read(number, result) => self.take_mesh(number, result),
+            Done::Built(number, wanted, result) => return self.take_built(number, wanted, result),
+            Done::Piped(key, result) => {
+                self.running.piped.retain(|other| *other != key);
+                if let Err(error) = result {
+                    self.failed.piped.push(key);
+                    return self.fails(error);
+                }
+            }
+            Done::Measured(subject, result) => {
+                self.running.measured = None;
+                match result {
+                    Ok(measured) => {
+                        self.kept.insert(0, measured);
+                        self.kept.truncate(6);
+                    }
+                    Err(error) => {
+                        self.failed.measured.push(*subject);
+                        return self.fails(error);
+                    }
+                }
+            }
+            Done::Compared(result) => {
+                self.running.compared = None;
+                result.or_else(|error| self.fails(error))?;
+            }
+            Done::Saved(result) => {
+                self.running.saved -= 1;
+                match result {
+                    Ok(words) => self.viewer.notices.tell(words),
+                    Err(error) => return self.fails(error),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What went wrong is told; a device that was lost ends the work with it.
+    fn fails(&mut self, error: Error) -> Result<()> {
+        if matches!(error, Error::DeviceLost { .. }) {
+            return Err(error);
+        }
+        let error = crate::refused::in_words_of_options(error);
+        self.viewer.notices.warn(error.to_string());
+        Ok(())
+    }
+
+    fn take_mesh(&mut self, number: u64, result: Result<ControlMesh>) {
+        self.running.read.retain(|other| *other != number);
+        let Some(part) = self
+            .viewer
+            .parts
+            .iter_mut()
+            .find(|part| part.number() == number)
+        else {
+            return;
+        };
+        match result {
+            Ok(mesh) => {
+                part.loaded(mesh);
+                if self.viewer.selection.part() == Some(number) {
+                    self.viewer.selection.clear();
+                }
+                let unread = self
+                    .viewer
+                    .parts
+                    .iter()
+                    .any(|part| part.history().is_none());
+                if self.viewer.fit_pending && !unread {
+                    self.viewer.fit();
+                }
+            }
+            Err(error) => part.error = Some(error.to_string()),
+        }
+    }
+
+    fn take_built(
+        &mut self,
+        number: u64,
+        wanted: Wanted,
+        result: Result<(Arc<Model>, Vec<Drawn>)>,
+    ) -> Result<()> {
+        self.running.built.retain(|(other, _)| *other != number);
+        let parts = &mut self.viewer.parts;
+        let Some(part) = parts.iter_mut().find(|part| part.number() == number) else {
+            return Ok(());
+        };
+        match result {
+            Ok((model, sides)) => {
+                part.error = None;
+                part.model = Some(model.clone());
+                for refusal in sides.iter().flat_map(|drawn| &drawn.refusals) {
+                    self.viewer.notices.warn(refusal.clone());
+                }
+                self.stage.parts.retain(|staged| staged.number != number);
+                self.stage
+                    .parts
+                    .push(Staged::new(number, model, wanted, sides));
+                self.stage.parts.sort_by_key(|staged| staged.number);
+                self.fresh = true;
+                Ok(())
+            }
+            Err(error @ Error::DeviceLost { .. }) => Err(error),
+            Err(error) => {
+                let error = crate::refused::in_words_of_options(error);
+                let error = error.in_file(&part.name()).to_string();
+                part.error = Some(error.clone());
+                self.failed.built.push((number, wanted));
+                self.viewer.notices.warn(error);
+                Ok(())
+            }
+        }
+    }
+
+    /// What is under the cursor.
+    fn look_under_cursor(&mut self) {
+        self.found = self.probe.and_then(|at| {
+            let sides = Stage::sides(&self.viewer);
+            let (side, at) = under(&self.viewer, &sides, at)?;
+            let eye = self.viewer.orbit.eye();
+            let ray = Ray::new(&eye, at, side.viewport.aspect());
+            let parts = self.stage.parts.iter();
+            let all = parts.filter_map(|staged| self.measured(staged, side.recipe)?.find(ray));
+            all.min_by(|a, b| a.distance.total_cmp(&b.distance))
+        });
+    }
+
+    /// What is being worked on, in words.
+    pub fn busy(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        if !self.running.read.is_empty() {
+            words.push("reading".to_string());
+        }
+        if !self.running.built.is_empty() {
+            words.push("preparing".to_string());
+        }
+        if !self.running.piped.is_empty() {
+            words.push("building pipelines".to_string());
+        }
+        if self.running.saved > 0 {
+            words.push("saving".to_string());
+        }
+        if let Some(measured) = &self.running.compared {
+            let (done, all) = (measured.progress.position(), measured.progress.length());
+            let share = 100 * done / all.unwrap_or(0).max(1);
+            words.push(format!("asking the truth, {share} %"));
+        } else if self.running.measured.is_some() && self.viewer.compare.map.is_some() {
+            words.push("capturing".to_string());
+        }
+        words
+    }
+
+    /// Whether all is there that is wanted.
+    pub fn is_settled(&self) -> bool {
+        let running = &self.running;
+        running.read.is_empty()
+            && running.built.is_empty()
+            && running.piped.is_empty()
+            && running.compared.is_none()
+            && running.measured.is_none()
+            && running.saved == 0
+    }
+
+    /// Runs the panels on what came in.
+    pub fn panels(&mut self, input: egui::RawInput) -> egui::FullOutput {
+        self.look_under_cursor();
+        let legend = self.legend();
+        let egui = self.egui.clone();
+        let busy = self.busy();
+        let (viewer, found) = (&mut self.viewer, self.found.as_ref());
+        let readings = &self.readings;
+        egui.run(input, |ctx| {
+            let status = Status {
+                readings,
+                busy: busy.clone(),
+                probe: found,
+                scale: legend.clone(),
+            };
+            panels::show(ctx, viewer, &status);
+        })
+    }
+
+    /// What the colours of the map mean that is shown.
+    fn legend(&self) -> Option<Legend> {
+        let kind = self.viewer.compare.map?;
+        let sides = Stage::sides(&self.viewer);
+        let parts = self.stage.parts.iter();
+        let all = parts.flat_map(|staged| sides.iter().map(move |side| (staged, side.recipe)));
+        let all = all.filter_map(|(staged, side)| self.measured(staged, side).cloned());
+        let all: Vec<Arc<Measured>> = all.collect();
+        Legend::of(kind, &all)
+    }
+
+    /// What the picture of the scene depends on, as it is.
+    fn drawing(&self) -> Drawing {
+        let viewer = &self.viewer;
+        let ready = self.stage.missing(viewer, &self.context).len();
+        Drawing {
+            look: viewer.look,
+            cutting: viewer.cutting,
+            compare: viewer.compare,
+            orbit: viewer.orbit,
+            frozen: viewer.frozen,
+            selection: viewer.selection.clone(),
+            sides: Stage::sides(viewer),
+            parts: viewer
+                .parts
+                .iter()
+                .map(|part| {
+                    let revision = part.history().map_or(0, |history| history.revision());
+                    (part.number(), part.moves(), revision)
+                })
+                .collect(),
+            legend: self.legend(),
+            ready,
+        }
+    }
+
+    /// Shows a frame, with the scene drawn anew if it has changed. Only when the canvas is not busy.
+    pub fn show(&mut self, panels: &Panels) -> Result<Outcome> {
+        let started = Instant::now();
+        if let Some(seconds) = self.stage.device_seconds() {
+            self.readings.device.add(seconds);
+        }
+        let drawing = self.drawing();
+        let area = self.viewer.area;
+        let changed = self.fresh || self.drawn.as_ref() != Some(&drawing);
+        let mut scene = changed && !area.is_empty();
+        if scene {
+            let overlay = self.overlay(f64::from(panels.scale), drawing.legend.as_ref());
+            if let Err(error) = self.stage.decide(&self.viewer, &overlay, &self.context) {
+                self.fails(error)?;
+                scene = false;
+            }
+        }
+        self.canvas.confine(area);
+        let (stage, viewer, context) = (&mut self.stage, &self.viewer, &self.context);
+        let mut cost = None;
+        let mut record = |cmd, target: &_| {
+            cost = Some(stage.record(cmd, target, viewer, context)?);
+            Ok(())
+        };
+        let shown = match scene {
+            true => self.canvas.show(panels, area, Some(&mut record)),
+            false => self.canvas.show(panels, area, None),
+        }?;
+        if shown == Shown::Yes {
+            self.readings.frames[0] += 1;
+            self.readings.host.add(started.elapsed().as_secs_f64());
+            if let Some(cost) = cost {
+                self.readings.frames[1] += 1;
+                self.readings.cost = cost;
+            }
+        }
+        if shown == Shown::Yes || shown == Shown::Hidden || !scene {
+            self.drawn = Some(drawing);
+            self.fresh &= !scene && changed;
+        }
+        Ok(Outcome { shown, scene })
+    }
+
+    fn overlay(&self, scale: f64, legend: Option<&Legend>) -> Overlay {
+        let sides = Stage::sides(&self.viewer);
+        let area = sides.first().map_or(self.viewer.area, |side| side.viewport);
+        let mut overlay = Overlay::new(&self.viewer, area, scale);
+        overlay.maps = vec![Default::default(); 2];
+        let Some(legend) = legend else { return overlay };
+        let (eye, all) = (self.viewer.orbit.eye(), self.viewer.sphere());
+        for side in &sides {
+            let (vertices, triangles) = &mut overlay.maps[side.recipe];
+            for staged in &self.stage.parts {
+                let Some(measured) = self.measured(staged, side.recipe) else {
+                    continue;
+                };
+                let view = eye.view(measured.model.placement(), side.viewport.aspect(), all);
+                let Some(map) = measured.map(legend.kind, legend.scale, &view) else {
+                    continue;
+                };
+                let first = vertices.len() as u32;
+                vertices.extend(map);
+                let own = measured.surface.triangles.iter();
+                triangles.extend(own.map(|triangle| triangle.map(|corner| first + corner)));
+            }
+        }
+        overlay
+    }
+
+    /// Goes along with a window of this size.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
+        self.fresh = true;
+        self.canvas.resize(size)
+    }
+
+    /// Ends the work and gives everything back.
+    pub fn close(mut self) -> Result<()> {
+        let _ = self.canvas.wait();
+        self.context.save_cache();
+        if !self.workers.finish(Duration::from_secs(3)) {
+            // What still works uses the device: it goes with the process.
+            std::mem::forget(self.context.clone());
+        }
+        Ok(())
+    }
+
+    /// Does what is wished of the program; whether it is to end.
+    pub fn grant(&mut self) -> Result<bool> {
+        for wish in self.viewer.take_wishes() {
+            match wish {
+                Wish::Probe(at) => self.probe = Some(at),
+                Wish::Quit => return Ok(true),
+                Wish::Screenshot => {
+                    if !self.canvas.shoot()? {
+                        self.viewer
+                            .notices
+                            .warn("the display does not give its pictures back");
+                    }
+                }
+                Wish::Render => self.render()?,
+                Wish::CopyCommand => self.copy(),
+                Wish::Save => self.save()?,
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// The side at a place of the picture (-1..1, y up), and the place in that side's own view.
+fn under<'s>(viewer: &Viewer, sides: &'s [Side], at: [f64; 2]) -> Option<(&'s Side, DVec2)> {
+    let area = viewer.area;
+    let pixel = f64::from(area.x) + 0.5 * (at[0] + 1.0) * f64::from(area.width);
+    let inside = |side: &&Side| {
+        let left = f64::from(side.scissor.x);
+        (left..left + f64::from(side.scissor.width)).contains(&pixel)
+    };
+    let side = sides.iter().find(inside)?;
+    let port = side.viewport;
+    let x = 2.0 * (pixel - f64::from(port.x)) / f64::from(port.width.max(1)) - 1.0;
+    Some((side, DVec2::new(x, at[1])))
+}

@@ -1,0 +1,459 @@
+//! What is on the device of the scene, and how a frame draws it.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::DVec3;
+use hullform::Result;
+use hullform::ash::vk;
+use hullform::gpu::{Fill, Pipelines, Residence, View, ring};
+use hullform::host::{
+    ColouredTriangles, ColouredVertex, OffscreenTarget, Owned, Style, TimestampQuery,
+};
+use hullform::mesh::Model;
+use hullform::method::{DepthTags, Displacement};
+
+use super::context::{Context, Drawn, Key};
+use super::overlay::Overlay;
+use super::part::{Part, Wanted};
+use super::viewer::{Beside, Viewer};
+use super::viewport::Area;
+use crate::adaptive::Seen;
+use crate::eye::Eye;
+use crate::render;
+
+/// A part on the device.
+pub struct Staged {
+    /// Of which part.
+    pub number: u64,
+    /// The model.
+    pub model: Arc<Model>,
+    /// What it was made for.
+    pub wanted: Wanted,
+    /// A surface a recipe.
+    pub sides: Vec<Drawn>,
+    /// Which of the part's moves its surfaces have.
+    moves: u64,
+    /// For what the lists were decided.
+    decided: Option<Decision>,
+}
+
+/// What lists depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct Decision {
+    cut: hullform::gpu::Cut,
+    tags: Option<(super::orbit::Orbit, f32, u64, [u32; 2])>,
+}
+
+/// A side of the picture: where it is, and what is drawn there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// What the whole of its view would fill.
+    pub viewport: Area,
+    /// What is seen of that.
+    pub scissor: Area,
+    /// Which of the recipes is drawn.
+    pub recipe: usize,
+}
+
+/// What is on the device.
+pub struct Stage {
+    /// The parts.
+    pub parts: Vec<Staged>,
+    overlay: ColouredTriangles,
+    maps: Vec<ColouredTriangles>,
+    timer: Option<TimestampQuery>,
+    timed: bool,
+}
+
+/// What a frame took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cost {
+    /// Seconds to decide and record.
+    pub host: f64,
+    /// Draws.
+    pub draws: usize,
+    /// Batches.
+    pub batches: usize,
+    /// Vertices that are evaluated.
+    pub vertices: u64,
+    /// Control points that were computed anew for the cache.
+    pub points: u64,
+}
+
+impl Staged {
+    /// A part that has been brought to the device, as it was when it was read.
+    pub fn new(number: u64, model: Arc<Model>, wanted: Wanted, sides: Vec<Drawn>) -> Staged {
+        Staged {
+            number,
+            model,
+            wanted,
+            sides,
+            moves: 0,
+            decided: None,
+        }
+    }
+}
+
+impl Stage {
+    /// Nothing is on the device yet.
+    pub fn new(context: &Context) -> Result<Stage> {
+        let (device, mould) = (context.device(), context.mould());
+        let map = || ColouredTriangles::new(device, mould, &[], &[]);
+        Ok(Stage {
+            parts: Vec::new(),
+            overlay: map()?,
+            maps: vec![map()?, map()?],
+            timer: TimestampQuery::new(device)?,
+            timed: false,
+        })
+    }
+
+    /// The device's seconds for the scene that was drawn last. Once it is done.
+    pub fn device_seconds(&mut self) -> Option<f64> {
+        let timed = std::mem::take(&mut self.timed);
+        let timer = self.timer.as_ref().filter(|_| timed)?;
+        timer.read().ok()
+    }
+
+    /// The sides of the picture.
+    pub fn sides(viewer: &Viewer) -> Vec<Side> {
+        let (all, at) = (viewer.area, viewer.compare.at);
+        let side = |viewport, scissor, recipe| Side {
+            viewport,
+            scissor,
+            recipe,
+        };
+        match viewer.compare.beside {
+            Beside::Alone => vec![side(all, all, 0)],
+            Beside::Split => vec![
+                side(all, all.columns(0.0, at), 0),
+                side(all, all.columns(at, 1.0), 1),
+            ],
+            Beside::SideBySide => [0, 1]
+                .map(|recipe| {
+                    let half = all.columns(0.5 * recipe as f64, 0.5 * (recipe + 1) as f64);
+                    side(half, half, recipe)
+                })
+                .into(),
+        }
+    }
+
+    /// What becomes of triangles, in the order in which they are drawn.
+    pub fn fills(viewer: &Viewer) -> Vec<Fill> {
+        let mut fills = vec![Fill::Solid(viewer.look.shading.into())];
+        fills.extend(viewer.look.wireframe.then_some(Fill::Lines));
+        fills
+    }
+
+    /// Pipelines that are needed and not there, each with a part and a side that they are for.
+    pub fn missing(&self, viewer: &Viewer, context: &Context) -> Vec<(usize, usize, Style)> {
+        let mut missing: Vec<(Key, (usize, usize, Style))> = Vec::new();
+        for (number, part) in self.parts.iter().enumerate() {
+            for (side, drawn) in part.sides.iter().enumerate() {
+                for fill in Stage::fills(viewer) {
+                    let style = style(drawn, viewer, fill);
+                    let key = drawn.key(style);
+                    let known = missing.iter().any(|(other, _)| *other == key);
+                    if !known && context.ready(&key).is_none() {
+                        missing.push((key, (number, side, style)));
+                    }
+                }
+            }
+        }
+        missing.into_iter().map(|(_, place)| place).collect()
+    }
+
+    /// Brings what has changed to where the next frame finds it: places, levels, lines. Nothing is drawn at this time.
+    ///
+    /// # Errors
+    /// What the library refuses, of a part whose number comes along.
+    pub fn decide(&mut self, viewer: &Viewer, overlay: &Overlay, context: &Context) -> Result<()> {
+        for staged in &mut self.parts {
+            let number = staged.number;
+            let Some(part) = viewer.parts.iter().find(|part| part.number() == number) else {
+                continue;
+            };
+            staged.place(part)?;
+            staged.decide(viewer, part, context)?;
+        }
+        let maps = self.maps.iter_mut().zip(&overlay.maps);
+        // SAFETY: nothing is drawn at this time, which the caller has asked the canvas.
+        unsafe {
+            for (map, (vertices, triangles)) in maps {
+                map.replace(vertices, triangles)?;
+            }
+            self.overlay.replace(&overlay.vertices, &overlay.triangles)
+        }
+    }
+
+    /// Records the scene.
+    pub fn record(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        target: &OffscreenTarget,
+        viewer: &Viewer,
+        context: &Context,
+    ) -> Result<Cost> {
+        let started = Instant::now();
+        let mut cost = Cost::default();
+        let device = context.device().raw();
+        let sides = Stage::sides(viewer);
+        if let Some(timer) = &self.timer {
+            // SAFETY: recording on this device, outside of a render pass.
+            unsafe { timer.cmd_begin(cmd) };
+        }
+        for part in &mut self.parts {
+            for side in &sides {
+                let view = view(viewer, &part.model, side.viewport);
+                if let Some(drawn) = part.sides.get_mut(side.recipe) {
+                    // SAFETY: as above, on the device that made it.
+                    cost.points += unsafe { drawn.cmd_prepare(cmd, context, view) }?;
+                }
+            }
+        }
+        // SAFETY: as above; each batch is recorded once a round.
+        unsafe {
+            target.begin(cmd, render::CLEAR);
+            for side in &sides {
+                cmd_look(device, cmd, side);
+                if viewer.compare.map.is_some() {
+                    self.maps[side.recipe].cmd_draw(cmd);
+                } else {
+                    for part in &self.parts {
+                        if let Some(drawn) = part.sides.get(side.recipe) {
+                            drawn.cmd_draw(cmd, viewer, context, &mut cost)?;
+                        }
+                    }
+                }
+                self.overlay.cmd_draw(cmd);
+            }
+            target.end(cmd);
+            if let Some(timer) = &self.timer {
+                timer.cmd_end(cmd);
+                self.timed = true;
+            }
+        }
+        cost.host = started.elapsed().as_secs_f64();
+        Ok(cost)
+    }
+}
+
+/// How surfaces are drawn.
+fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
+    Style {
+        cull: viewer.cutting.cull.mode(),
+        ..Style::new(drawn.surface.options(), viewer.cutting.spacing, fill)
+    }
+}
+
+/// What is seen of a model.
+fn view(viewer: &Viewer, model: &Model, area: Area) -> View {
+    let placement = model.placement();
+    let eye: Eye = viewer.orbit.eye();
+    let seen = eye.view(placement, area.aspect(), viewer.sphere());
+    View {
+        clip_from_model: seen.clip_from_model.to_cols_array_2d(),
+        eye: seen.eye.to_array(),
+        displacement: displacement(viewer, model),
+    }
+}
+
+/// Bumps as `render` has them.
+fn displacement(viewer: &Viewer, model: &Model) -> Displacement {
+    render::bumps(model, viewer.look.displace)
+}
+
+/// # Safety
+/// `cmd` is recording on `device`.
+unsafe fn cmd_look(device: &hullform::ash::Device, cmd: vk::CommandBuffer, side: &Side) {
+    let (port, part) = (side.viewport, side.scissor);
+    let viewport = vk::Viewport {
+        x: port.x as f32,
+        y: port.y as f32,
+        width: port.width.max(1) as f32,
+        height: port.height.max(1) as f32,
+        min_depth: 0.0,
+        max_depth: 1.0,
+    };
+    let scissor = vk::Rect2D {
+        offset: vk::Offset2D {
+            x: part.x as i32,
+            y: part.y as i32,
+        },
+        extent: vk::Extent2D {
+            width: part.width,
+            height: part.height,
+        },
+    };
+    // SAFETY: this function's contract.
+    unsafe {
+        device.cmd_set_viewport(cmd, 0, &[viewport]);
+        device.cmd_set_scissor(cmd, 0, &[scissor]);
+    }
+}
+
+impl Staged {
+    /// Brings the places of control vertices where they are shown.
+    fn place(&mut self, part: &Part) -> Result<()> {
+        if self.moves == part.moves() || part.points().len() != self.model.mesh().vertex_count() {
+            return Ok(());
+        }
+        let placement = self.model.placement();
+        let local = |&point: &DVec3| placement.local(point).as_vec3().to_array();
+        let positions: Vec<[f32; 3]> = part.points().iter().map(local).collect();
+        for drawn in &mut self.sides {
+            drawn.surface.write_positions(&positions)?;
+        }
+        self.moves = part.moves();
+        Ok(())
+    }
+
+    /// Decides levels anew, where what they depend on has changed.
+    fn decide(&mut self, viewer: &Viewer, part: &Part, context: &Context) -> Result<()> {
+        let cut = viewer.cutting.cut();
+        let size = [viewer.area.width, viewer.area.height];
+        let tags = |pixels| (viewer.cutting_orbit(), pixels, part.moves(), size);
+        let decision = Decision {
+            cut,
+            tags: viewer.cutting.pixels.map(tags),
+        };
+        let decided = self.decided.as_ref() == Some(&decision);
+        if decided && self.sides.iter().all(|drawn| drawn.list.is_some()) {
+            return Ok(());
+        }
+        let tags = self.tags(viewer, part)?;
+        let device = context.device();
+        for drawn in &mut self.sides {
+            let list = drawn.surface.draw_list(cut, tags.as_ref())?;
+            let allocator = &mut *device.allocator();
+            // SAFETY: nothing is drawn at this time; device and allocator made the surface.
+            unsafe { drawn.surface.write_draws(device.raw(), allocator, &list) }?;
+            drawn.list = Some(list);
+        }
+        self.decided = Some(decision);
+        Ok(())
+    }
+
+    /// A depth for each control vertex, by the camera that cuts.
+    fn tags(&self, viewer: &Viewer, part: &Part) -> Result<Option<DepthTags>> {
+        let Some(adaptive) = viewer.cutting.adaptive() else {
+            return Ok(None);
+        };
+        let Some(drawn) = self.sides.first() else {
+            return Ok(None);
+        };
+        let placement = self.model.placement();
+        let eye = viewer.cutting_orbit().eye();
+        let view = eye.view(placement, viewer.area.aspect(), viewer.sphere());
+        let seen = Seen {
+            clip_from_model: view.clip_from_model,
+            eye: view.eye,
+            scale: placement.scale,
+            size: [viewer.area.width, viewer.area.height].map(|side| side.max(1) as f32),
+        };
+        let places = part.points().iter().map(|&p| placement.local(p).as_vec3());
+        let places: Vec<_> = match part.points().len() == self.model.mesh().vertex_count() {
+            true => places.collect(),
+            false => self.model.positions(),
+        };
+        let outline = &drawn.surface.prepared().outline;
+        let level = viewer.cutting.cut().level;
+        adaptive.tags(outline, &places, level, seen).map(Some)
+    }
+}
+
+impl Drawn {
+    /// Records what comes before rendering: how many control points are computed.
+    ///
+    /// # Safety
+    /// `cmd` is recording on the device that made it, outside of a render pass.
+    unsafe fn cmd_prepare(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        context: &Context,
+        view: View,
+    ) -> Result<u64> {
+        let (device, layout) = (context.device().raw(), context.layout());
+        let mut points = 0;
+        // SAFETY: this function's contract.
+        unsafe {
+            self.surface.cmd_upload(device, cmd);
+            if let (Some(cache), Some(list)) = (&self.cache, &self.list) {
+                points = self.surface.cmd_cache(device, cmd, layout, cache, list)?;
+            }
+            self.surface.cmd_prepare(device, cmd, &[view])?;
+        }
+        Ok(u64::from(points))
+    }
+
+    /// Records its draws: solid, and lines over it. What has no pipelines yet is not drawn.
+    ///
+    /// # Safety
+    /// As `TessellatedSurface::cmd_draw`.
+    unsafe fn cmd_draw(
+        &self,
+        cmd: vk::CommandBuffer,
+        viewer: &Viewer,
+        context: &Context,
+        cost: &mut Cost,
+    ) -> Result<()> {
+        let Some(list) = &self.list else {
+            return Ok(());
+        };
+        for (round, fill) in (0..).zip(Stage::fills(viewer)) {
+            let key = self.key(style(self, viewer, fill));
+            let Some(pipelines) = context.ready(&key) else {
+                continue;
+            };
+            // SAFETY: this function's contract.
+            unsafe { self.cmd_round(cmd, context, list, round, &pipelines, cost) }?;
+        }
+        Ok(())
+    }
+
+    /// # Safety
+    /// As there.
+    unsafe fn cmd_round(
+        &self,
+        cmd: vk::CommandBuffer,
+        context: &Context,
+        list: &hullform::gpu::DrawList,
+        round: u32,
+        pipelines: &Arc<Owned<Pipelines>>,
+        cost: &mut Cost,
+    ) -> Result<()> {
+        let (device, layout) = (context.device().raw(), context.layout());
+        for batch in list.round(round)? {
+            let first = batch.points() > 0 && batch.ring_batch() == 0;
+            // SAFETY: this function's contract; the target's pass allows the barrier.
+            unsafe {
+                if round > 0 && first && list.options().residence == Residence::Ring {
+                    ring::cmd_ring_barrier(device, cmd);
+                }
+                self.surface
+                    .cmd_draw(device, cmd, layout, pipelines, 0..1, batch)?;
+            }
+            cost.batches += 1;
+            cost.draws += batch.draws().len();
+            cost.vertices += u64::from(batch.vertices());
+        }
+        Ok(())
+    }
+}
+
+/// The background, as `render` has it: two triangles behind everything.
+pub fn background() -> ([ColouredVertex; 4], [[u32; 3]; 2]) {
+    let corner = |x: f32, y: f32, [r, g, b]: [f32; 3]| ColouredVertex {
+        clip: [x, y, 1.0, 1.0],
+        colour: [r, g, b, 1.0],
+    };
+    let [top, bottom] = crate::output::picture::BACKGROUND;
+    let vertices = [
+        corner(-1.0, -1.0, top),
+        corner(1.0, -1.0, top),
+        corner(1.0, 1.0, bottom),
+        corner(-1.0, 1.0, bottom),
+    ];
+    (vertices, [[0, 1, 2], [0, 2, 3]])
+}

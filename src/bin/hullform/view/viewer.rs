@@ -1,0 +1,294 @@
+//! What the window shows, as a plain value: looks, cuts, cameras, models and what is wanted of them. It knows nothing of windows and devices.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use glam::DVec3;
+use hullform::gpu::{Backend, Cut, Residence};
+use hullform::mesh::Scheme;
+use hullform::method::METHODS;
+use hullform::tessellation::Spacing;
+
+use super::context::{Recipe, greatest_level};
+use super::deform::Deform;
+use super::notices::Notices;
+use super::orbit::Orbit;
+use super::part::Part;
+use super::selection::Selection;
+use super::viewport::Area;
+use crate::adaptive::Adaptive;
+use crate::eye::Sphere;
+pub use crate::options::Cull;
+use crate::render::Shading;
+
+/// What is shown of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// What colours mean.
+    pub shading: Shading,
+    /// Whether the edges of triangles are drawn.
+    pub wireframe: bool,
+    /// Whether the control cage is drawn.
+    pub cage: bool,
+    /// Whether its vertices and faces are numbered.
+    pub numbers: bool,
+    /// Bumps, as a share of the model's diagonal.
+    pub displace: f32,
+}
+
+/// How surfaces are cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cutting {
+    /// The method; None for the model's own.
+    pub method: Option<&'static str>,
+    /// The scheme; None for the model's own.
+    pub scheme: Option<Scheme>,
+    /// Who cuts.
+    pub backend: Backend,
+    /// Where control points live.
+    pub residence: Residence,
+    /// Where vertices lie along edges.
+    pub spacing: Spacing,
+    /// The level, 1..=64.
+    pub level: f32,
+    /// Pixels a segment, where levels go by the picture.
+    pub pixels: Option<f32>,
+    /// Which triangles are left out.
+    pub cull: Cull,
+    /// Whether cracks are amplified.
+    pub amplify: bool,
+}
+
+impl Cutting {
+    /// As the library takes it.
+    pub fn cut(&self) -> Cut {
+        Cut {
+            level: self.level.clamp(1.0, greatest_level(self.backend)),
+            spacing: self.spacing,
+        }
+    }
+
+    /// What depth tags go by.
+    pub fn adaptive(&self) -> Option<Adaptive> {
+        self.pixels.map(Adaptive::Screen)
+    }
+}
+
+/// How two methods stand side by side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Beside {
+    /// There is one.
+    #[default]
+    Alone,
+    /// A line parts them.
+    Split,
+    /// Each has a half of the picture, and sees all.
+    SideBySide,
+}
+
+/// Which error a map shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// Distance from the truth.
+    Position,
+    /// Angle between normals.
+    Normal,
+}
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compare {
+    /// How.
+    pub beside: Beside,
+    /// The other method; None for the model's own.
+    pub other: Option<&'static str>,
+    /// Where the line is, from 0 to 1.
+    pub at: f64,
+    /// The error that is shown in the place of colours.
+    pub map: Option<ErrorKind>,
+}
+
+/// All that the window shows.
+pub struct Viewer {
+    /// What is shown.
+    pub look: Look,
+    /// How it is cut.
+    pub cutting: Cutting,
+    /// What it is compared with.
+    pub compare: Compare,
+    /// From where it is seen.
+    pub orbit: Orbit,
+    /// The camera by which it is cut, where that stands still.
+    pub frozen: Option<Orbit>,
+    /// The models.
+    pub parts: Vec<Part>,
+    /// What is picked.
+    pub selection: Selection,
+    /// How it moves.
+    pub deform: Deform,
+    /// What there is to be told.
+    pub notices: Notices,
+    /// Whether the keys are told.
+    pub sheet: bool,
+    /// Whether panels are there.
+    pub panels: bool,
+    /// The scene's area in the window.
+    pub area: Area,
+    /// Where things are in the window, by name, in points: for who drives it by script.
+    pub places: BTreeMap<&'static str, egui::Rect>,
+    /// What is wanted of the program.
+    pub wishes: Vec<Wish>,
+    /// Whether the camera is to show everything once it is known.
+    pub fit_pending: bool,
+    /// Files that were opened, the latest first.
+    pub recent: Vec<PathBuf>,
+    number: u64,
+}
+
+/// What the window asks of the program around it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wish {
+    /// Saves what is seen as a picture.
+    Screenshot,
+    /// Saves the picture that `render` makes of it.
+    Render,
+    /// Copies the command line that makes it.
+    CopyCommand,
+    /// Saves the model with its changes.
+    Save,
+    /// Looks for what is under the cursor, at a place of the scene in -1..1, y up.
+    Probe([f64; 2]),
+    /// Ends.
+    Quit,
+}
+
+impl Default for Viewer {
+    fn default() -> Viewer {
+        Viewer {
+            look: Look {
+                shading: Shading::Lit,
+                wireframe: false,
+                cage: false,
+                numbers: false,
+                displace: 0.0,
+            },
+            cutting: Cutting {
+                method: None,
+                scheme: None,
+                backend: Backend::Tessellator,
+                residence: Residence::Cache,
+                spacing: Spacing::FractionalEven,
+                level: 8.0,
+                pixels: None,
+                cull: Cull::None,
+                amplify: false,
+            },
+            compare: Compare {
+                beside: Beside::Alone,
+                other: Some("flat"),
+                at: 0.5,
+                map: None,
+            },
+            orbit: Orbit::default(),
+            frozen: None,
+            parts: Vec::new(),
+            selection: Selection::default(),
+            deform: Deform::default(),
+            notices: Notices::default(),
+            sheet: false,
+            panels: true,
+            area: Area::default(),
+            places: BTreeMap::new(),
+            wishes: Vec::new(),
+            fit_pending: true,
+            recent: Vec::new(),
+            number: 0,
+        }
+    }
+}
+
+impl Viewer {
+    /// Shows these models alone.
+    pub fn open(&mut self, paths: impl IntoIterator<Item = Option<PathBuf>>) {
+        self.parts.clear();
+        self.selection.clear();
+        for path in paths {
+            self.number += 1;
+            if let Some(path) = &path {
+                self.recent.retain(|other| other != path);
+                self.recent.insert(0, path.clone());
+                self.recent.truncate(12);
+            }
+            self.parts.push(Part::new(self.number, path));
+        }
+        self.fit_pending = true;
+    }
+
+    /// How each side is prepared.
+    pub fn recipes(&self) -> Vec<Recipe> {
+        let recipe = |method| Recipe {
+            method,
+            backend: self.cutting.backend,
+            residence: self.cutting.residence,
+            amplify: self.cutting.amplify,
+        };
+        let mut all = vec![recipe(self.cutting.method)];
+        if self.compare.beside != Beside::Alone {
+            all.push(recipe(self.compare.other));
+        }
+        all
+    }
+
+    /// Places of all control vertices, as they are shown.
+    pub fn points(&self) -> impl Iterator<Item = DVec3> + Clone + '_ {
+        self.parts
+            .iter()
+            .flat_map(|part| part.points().iter().copied())
+    }
+
+    /// A sphere around all that is shown, bumps included.
+    pub fn sphere(&self) -> Sphere {
+        let mut all = Sphere::around(self.points());
+        all.radius *= 1.0 + 2.0 * f64::from(self.look.displace.abs());
+        all
+    }
+
+    /// Moves the camera such that all is seen.
+    pub fn fit(&mut self) {
+        let mut orbit = self.orbit;
+        orbit.fit(self.points(), self.area.aspect());
+        self.orbit = orbit;
+        self.fit_pending = false;
+    }
+
+    /// The camera by which surfaces are cut.
+    pub fn cutting_orbit(&self) -> Orbit {
+        self.frozen.unwrap_or(self.orbit)
+    }
+
+    /// Takes what is to be done for it.
+    pub fn take_wishes(&mut self) -> Vec<Wish> {
+        std::mem::take(&mut self.wishes)
+    }
+
+    /// Whether something moves by itself, so that frames follow one another.
+    pub fn is_moving(&self) -> bool {
+        self.deform.is_playing()
+    }
+
+    /// The part that edits go to: the one with the selection, else the first.
+    pub fn edited(&mut self) -> Option<&mut Part> {
+        let number = self.selection.part();
+        let at = self
+            .parts
+            .iter()
+            .position(|part| Some(part.number()) == number);
+        self.parts.get_mut(at.unwrap_or(0))
+    }
+}
+
+/// The name in the table of methods, which lives as long as the program.
+pub fn method_name(name: &str) -> Option<&'static str> {
+    let mut names = METHODS.iter().map(|method| method.name);
+    names.find(|own| *own == name)
+}

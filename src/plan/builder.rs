@@ -168,7 +168,7 @@ fn limit_row(base: &Level, corner: u32) -> Vec<f64> {
     loop {
         if let Some(limit) = limit_stencil(&level.topology, 0, corner) {
             let mut rows = Rows::zero(level.rows.width(), 0);
-            rows.push(&limit.position, &level.rows);
+            rows.push(|row| level.rows.add_to(row, &limit.position));
             return rows.row(0).to_vec();
         }
         level = level.refined(&[(0, corner)]);
@@ -341,7 +341,7 @@ impl Builder {
 
     fn point(&mut self, level: &Level, point: ControlPoint, base: Option<u32>) -> u32 {
         *self.numbers.entry((base, point)).or_insert_with(|| {
-            self.rows.push(&point.mask(), &level.rows);
+            self.rows.push(|row| level.rows.add_to(row, &point.mask()));
             self.bases.pushed(base);
             self.rows.len() as u32 - 1
         })

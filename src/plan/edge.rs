@@ -142,7 +142,7 @@ impl Builder {
         let half = u32::from(!span.interior_half_is_upper());
         let both = [from, level.topology.edge(edge).other(from)];
         for (vertex, _) in both.iter().zip(ends).filter(|(_, end)| depth > 0 && *end) {
-            self.bases.found(half, level.rows.row(*vertex as usize));
+            self.bases.found(half, &level.rows.row(*vertex as usize));
         }
         if let Some(curve) = edge_curve(&level.topology, edge, from, sides) {
             return Branch::Leaf(self.leaf(level, &curve, span, depth));
@@ -186,7 +186,7 @@ impl Builder {
         let mut row = |masks: &[Mask; 4]| {
             let first = self.rows.len() as u32;
             for mask in masks {
-                self.rows.push(mask, &level.rows);
+                self.rows.push(|row| level.rows.add_to(row, mask));
                 self.levels.push(required);
                 self.bases.pushed(base);
             }

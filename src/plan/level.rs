@@ -2,14 +2,14 @@
 
 use crate::mesh::topology::Topology;
 use crate::plan::configuration::Configuration;
-use crate::plan::rows::Rows;
+use crate::plan::sums::Sums;
 use crate::subdivision::{Refinement, refine, refine_edge};
 
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
 #[derive(Clone)]
 pub(super) struct Level {
     pub topology: Topology,
-    pub rows: Rows,
+    pub rows: Sums,
 }
 
 impl Level {
@@ -17,7 +17,7 @@ impl Level {
     pub fn whole(configuration: &Configuration) -> Level {
         let topology = configuration.topology();
         Level {
-            rows: Rows::identity(topology.vertex_count()),
+            rows: Sums::identity(topology.vertex_count()),
             topology,
         }
     }
@@ -43,14 +43,9 @@ impl Level {
     }
 
     fn next(&self, refined: Refinement) -> Level {
-        let mut rows = Rows::zero(self.rows.width(), 0);
-        rows.reserve(refined.masks.len());
-        for mask in &refined.masks {
-            rows.push(mask, &self.rows);
-        }
         Level {
             topology: refined.topology,
-            rows,
+            rows: self.rows.next(&refined.masks),
         }
     }
 }

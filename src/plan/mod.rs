@@ -12,6 +12,7 @@ mod packing;
 mod rows;
 mod span;
 mod strip;
+mod sums;
 mod tree;
 mod vertex;
 mod walk;

@@ -33,7 +33,7 @@ fn at_corner(base: &Level, corner: u32) -> [Vec<f64>; 2] {
     let limit = limit_stencil(&deepest.topology, 0, (corner + 2) % 4);
     let limit = limit.expect("four quads meet inside of a face, and nothing there is sharp");
     let mut rows = Rows::zero(deepest.rows.width(), 0);
-    rows.push(&limit.du, &deepest.rows);
-    rows.push(&limit.dv, &deepest.rows);
+    rows.push(|row| deepest.rows.add_to(row, &limit.du));
+    rows.push(|row| deepest.rows.add_to(row, &limit.dv));
     orthonormal(rows.row(0), rows.row(1))
 }

@@ -1,5 +1,7 @@
 //! Points as weighted sums over a ring: a matrix that grows row by row.
 
+use crate::subdivision::Mask;
+
 /// Rows of weights, one behind the other.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
@@ -43,25 +45,29 @@ impl Rows {
         &mut self.weights[self.width * number..][..self.width]
     }
 
-    /// Makes room for so many rows more.
-    pub fn reserve(&mut self, count: usize) {
-        self.weights.reserve(self.width * count);
-    }
-
-    /// Appends a point that a mask makes of other rows' points.
-    pub fn push(&mut self, mask: &[(u32, f64)], points: &Rows) {
+    /// Appends a row of zeros, for something to be added to it.
+    pub fn push(&mut self, row: impl FnOnce(&mut [f64])) {
         let number = self.len();
         self.weights.resize(self.weights.len() + self.width, 0.0);
-        self.add(number, mask, points);
+        row(self.row_mut(number));
     }
 
-    /// Adds to a row what a mask makes of other rows' points.
-    pub fn add(&mut self, number: usize, mask: &[(u32, f64)], points: &Rows) {
-        let sum = self.row_mut(number);
+    /// Adds to a row what a mask makes of these points.
+    pub fn add_to(&self, row: &mut [f64], mask: &[(u32, f64)]) {
         for &(vertex, weight) in mask {
-            for (sum, value) in sum.iter_mut().zip(points.row(vertex as usize)) {
+            for (sum, value) in row.iter_mut().zip(self.row(vertex as usize)) {
                 *sum += weight * value;
             }
         }
+    }
+
+    /// What masks make of these points.
+    pub fn next(&self, masks: &[Mask]) -> Rows {
+        let mut next = Rows::zero(self.width, 0);
+        next.weights.reserve(self.width * masks.len());
+        for mask in masks {
+            next.push(|row| self.add_to(row, mask));
+        }
+        next
     }
 }

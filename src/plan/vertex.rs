@@ -1,12 +1,16 @@
 //! Plans of vertices: limit position and tangents, for all faces around a vertex the same where the limit has one tangent plane.
 
+use rustc_hash::FxHashMap;
+
 use crate::error::Result;
+use crate::mesh::topology::Topology;
 use crate::plan::builder::{Plan, PlanOptions, Stencil};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
 use crate::plan::rows::Rows;
+use crate::plan::sums::Sums;
 use crate::subdivision::{
-    LimitStencil, Mask, TangentPlane, closing_tangents, limit_stencil, orthonormal, tangent_plane,
+    LimitStencil, TangentPlane, closing_tangents, limit_stencil, orthonormal, tangent_plane,
 };
 
 /// Which vertex of a configuration is meant.
@@ -30,7 +34,7 @@ pub struct VertexPlan {
 }
 
 /// How a face finds its normal at a vertex. Where the inside's plan has tangents near the corner, these have a say as well.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Side {
     /// The number of its pair of tangents; none at a cusp.
     pub pair: Option<u32>,
@@ -65,60 +69,82 @@ impl VertexPlan {
             VertexKind::Centre => (whole.refined(&[(0, 0)]), vec![(0, 2)]),
         };
         corners.sort_unstable();
-        let spares: Vec<Option<[Mask; 2]>> = match kind {
-            VertexKind::Control => corners
-                .iter()
-                .map(|&(face, corner)| closing_tangents(&whole.topology, face, corner))
-                .collect(),
-            VertexKind::Centre => vec![None],
-        };
+        let own = corners.clone();
         loop {
-            let limits = corners
-                .iter()
-                .map(|&(face, corner)| limit_stencil(&level.topology, face, corner));
-            if let Some(limits) = limits.collect::<Option<Vec<_>>>() {
-                let mut rows = Rows::zero(level.rows.width(), 0);
-                rows.push(&limits[0].position, &level.rows);
-                let mut planes: Vec<(TangentPlane, Side)> = Vec::new();
-                let mut sides = Vec::with_capacity(corners.len());
-                for ((limit, spare), &(face, corner)) in limits.iter().zip(&spares).zip(&corners) {
-                    let plane = tangent_plane(&level.topology, face, corner);
-                    if let Some(&(_, side)) = planes.iter().find(|(known, _)| *known == plane) {
-                        sides.push(side);
-                        continue;
-                    }
-                    let alone = level.topology.fan(face, corner).faces.len() == 1;
-                    let cusp = matches!(plane, TangentPlane::Face(_)) && !alone;
-                    let side = Side {
-                        pair: (!cusp).then_some((rows.len() as u32 - 1) / 2),
-                        spare: spare.is_some(),
-                    };
-                    if !cusp {
-                        push_tangents(&mut rows, limit, &level.rows);
-                    }
-                    for mask in spare.iter().flatten() {
-                        rows.push(mask, &whole.rows);
-                    }
-                    planes.push((plane, side));
-                    sides.push(side);
+            let sectors = sectors(&level.topology, &corners);
+            let limit = |sector: &Vec<usize>| {
+                let (face, corner) = corners[sector[0]];
+                limit_stencil(&level.topology, face, corner)
+            };
+            let Some(limits) = sectors.iter().map(limit).collect::<Option<Vec<_>>>() else {
+                (level, corners) = refined(&level, &corners);
+                continue;
+            };
+            let mut rows = Rows::zero(level.rows.width(), 0);
+            rows.push(|row| level.rows.add_to(row, &limits[0].position));
+            let mut sides = vec![Side::default(); corners.len()];
+            let mut planes: Vec<(TangentPlane, Side)> = Vec::new();
+            let mut cusps = 0;
+            for (sector, limit) in sectors.iter().zip(&limits) {
+                let (face, corner) = corners[sector[0]];
+                let plane = tangent_plane(&level.topology, face, corner);
+                // At a cusp each face has a plane of its own, and no tangents.
+                if matches!(plane, TangentPlane::Face(_)) && sector.len() > 1 {
+                    cusps += sector.len();
+                    continue;
                 }
-                return Ok(VertexPlan {
-                    plan: plan(&rows, options),
-                    sides,
-                    planes: planes.len(),
+                let known = planes.iter().find(|(known, _)| *known == plane);
+                let side = known.map(|&(_, side)| side).unwrap_or_else(|| {
+                    let (face, corner) = own[sector[0]];
+                    let spare = match kind {
+                        VertexKind::Control => closing_tangents(&whole.topology, face, corner),
+                        VertexKind::Centre => None,
+                    };
+                    let pair = Some((rows.len() as u32 - 1) / 2);
+                    push_tangents(&mut rows, limit, &level.rows);
+                    for mask in spare.iter().flatten() {
+                        rows.push(|row| whole.rows.add_to(row, mask));
+                    }
+                    let spare = spare.is_some();
+                    planes.push((plane, Side { pair, spare }));
+                    Side { pair, spare }
                 });
+                sector.iter().for_each(|&place| sides[place] = side);
             }
-            let (next, corner) = refined(&level, &corners);
-            (level, corners) = (next, corner);
+            return Ok(VertexPlan {
+                plan: plan(&rows, options),
+                sides,
+                planes: planes.len() + cusps,
+            });
         }
     }
 }
 
+/// The corners that share a sector between infinite creases, by their places: all that is known of the limit is the same for them.
+fn sectors(topology: &Topology, corners: &[(u32, u32)]) -> Vec<Vec<usize>> {
+    let places = corners.iter().zip(0..);
+    let places: FxHashMap<u32, usize> = places.map(|(&(face, _), place)| (face, place)).collect();
+    let mut is_met = vec![false; corners.len()];
+    let mut sectors = Vec::new();
+    for (place, &(face, corner)) in corners.iter().enumerate() {
+        if is_met[place] {
+            continue;
+        }
+        let faces = topology.fan(face, corner).faces;
+        let around = faces.iter().filter_map(|face| places.get(face).copied());
+        let mut sector: Vec<usize> = around.collect();
+        sector.sort_unstable();
+        sector.iter().for_each(|&place| is_met[place] = true);
+        sectors.push(sector);
+    }
+    sectors
+}
+
 /// Appends the limit's tangents, of which only the plane counts.
-fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Rows) {
+fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Sums) {
     let first = rows.len();
-    rows.push(&limit.du, level);
-    rows.push(&limit.dv, level);
+    rows.push(|row| level.add_to(row, &limit.du));
+    rows.push(|row| level.add_to(row, &limit.dv));
     let tangents = orthonormal(rows.row(first), rows.row(first + 1));
     for (row, weights) in (first..).zip(&tangents) {
         rows.row_mut(row).copy_from_slice(weights);

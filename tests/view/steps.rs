@@ -152,8 +152,11 @@ fn refuses_and_keeps_the_picture(session: &Session) {
         "the last picture stays"
     );
     session.press('m');
-    session.until("tables", |state| state["models"][0]["methods"][0] == "bft");
-    for _ in 0..4 {
+    session.press('m');
+    session.until("curved faces", |state| {
+        state["models"][0]["methods"][0] == "pn"
+    });
+    for _ in 0..3 {
         session.press('m');
     }
     session.until("the model's own", |state| {
@@ -168,6 +171,7 @@ fn freezes(session: &Session) {
     let state = session.until("frozen", |state| state["frozen"] == true);
     let vertices = state["vertices"].clone();
     let distance = number(&state["camera"]["distance"]);
+    session.hand.to(540.0, 340.0);
     for _ in 0..4 {
         session.hand.button(4, true);
         session.hand.button(4, false);

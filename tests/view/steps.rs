@@ -165,6 +165,10 @@ fn refuses_and_keeps_the_picture(session: &Session) {
 }
 
 fn freezes(session: &Session) {
+    for _ in 0..20 {
+        session.press('+');
+    }
+    session.until("fine", |state| number(&state["cut"]["level"]) > 20.0);
     session.press('a');
     session.until("by pixels", |state| state["cut"]["pixels"] == 8.0);
     session.press('z');

@@ -381,6 +381,7 @@ fn every_shader_of_a_method_has_its_twin() {
 
 /// Where else a method is named, and why.
 const NAMED: [(&str, &str, &str); 31] = [
+const NAMED: [(&str, &str, &str); 34] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -412,6 +413,10 @@ const NAMED: [(&str, &str, &str); 31] = [
     ("tests/cli_bench.rs", "flat", WORDS),
     ("tests/corners.rs", "quadtree", PLANS),
     ("tests/interruption.rs", "flat", WORDS),
+    ("tests/view/steps.rs", "quadtree", WORDS),
+    ("tests/view/steps.rs", "qas", WORDS),
+    ("tests/view/steps.rs", "pn", WORDS),
+    ("tests/view/steps.rs", "flat", WORDS),
 ];
 
 const PLANS: &str = "it is about plans, which one method has";

@@ -152,8 +152,11 @@ fn refuses_and_keeps_the_picture(session: &Session) {
         "the last picture stays"
     );
     session.press('m');
-    session.until("tables", |state| state["models"][0]["methods"][0] == "bft");
-    for _ in 0..4 {
+    session.press('m');
+    session.until("curved faces", |state| {
+        state["models"][0]["methods"][0] == "pn"
+    });
+    for _ in 0..3 {
         session.press('m');
     }
     session.until("the model's own", |state| {
@@ -162,12 +165,17 @@ fn refuses_and_keeps_the_picture(session: &Session) {
 }
 
 fn freezes(session: &Session) {
+    for _ in 0..20 {
+        session.press('+');
+    }
+    session.until("fine", |state| number(&state["cut"]["level"]) > 20.0);
     session.press('a');
     session.until("by pixels", |state| state["cut"]["pixels"] == 8.0);
     session.press('z');
     let state = session.until("frozen", |state| state["frozen"] == true);
     let vertices = state["vertices"].clone();
     let distance = number(&state["camera"]["distance"]);
+    session.hand.to(540.0, 340.0);
     for _ in 0..4 {
         session.hand.button(4, true);
         session.hand.button(4, false);

@@ -203,11 +203,21 @@ pub fn crease_colour(sharpness: f32) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::eye::{Eye, Lens, Sphere};
 
     fn pen(overlay: &mut Overlay) -> Pen<'_> {
+        let eye = Eye {
+            from: DVec3::ZERO,
+            to: DVec3::NEG_Z,
+            lens: Lens::Perspective(60.0),
+        };
+        let all = Sphere {
+            centre: DVec3::new(0.0, 0.0, -2.0),
+            radius: 1.5,
+        };
         Pen {
             overlay,
-            clip: DMat4::perspective_rh(1.0, 1.0, 0.1, 10.0),
+            clip: eye.clip_from_world(1.0, all),
             half: DVec2::splat(50.0),
             scale: 1.0,
         }

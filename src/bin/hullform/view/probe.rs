@@ -223,7 +223,9 @@ mod tests {
             let hit = ray.hits([point - x - y, point + x - y, point + y]);
             assert!(hit.is_some());
             assert!(ray.meets(point - x - y, point + x + y + DVec3::Z, f64::INFINITY));
-            assert!(!ray.meets(point + DVec3::ONE, point + 2.0 * DVec3::ONE, f64::INFINITY));
+            let [right, ..] = eye.axes();
+            let aside = point + 5.0 * right;
+            assert!(!ray.meets(aside - DVec3::ONE, aside + DVec3::ONE, f64::INFINITY));
         }
     }
 }

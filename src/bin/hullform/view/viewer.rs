@@ -7,6 +7,7 @@ use glam::DVec3;
 use hullform::gpu::{Backend, Cut, Residence};
 use hullform::host::Pacing;
 use hullform::mesh::Scheme;
+use hullform::method::METHODS;
 use hullform::tessellation::Spacing;
 
 use super::context::{Recipe, greatest_level};
@@ -187,7 +188,8 @@ impl Default for Viewer {
             },
             compare: Compare {
                 beside: Beside::Alone,
-                other: Some("flat"),
+                // The plainest.
+                other: METHODS.last().map(|method| method.name),
                 at: 0.5,
                 map: None,
             },

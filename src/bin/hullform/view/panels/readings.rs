@@ -17,6 +17,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, status: &Status<'_>) {
         heading(ui, name);
         table(ui, name, facts.iter().map(|(a, b)| (a.as_str(), b.clone())));
     }
+    if let Some(found) = status.probe {
+        heading(ui, "under the cursor");
+        table(ui, "probe", found.facts().into_iter());
+    }
     heading(ui, "frame");
     let cost = &readings.cost;
     let counts = [
@@ -64,10 +68,6 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, status: &Status<'_>) {
         Color32::from_gray(140)
     };
     ui.label(RichText::new(words).color(colour));
-    if let Some(found) = status.probe {
-        heading(ui, "under the cursor");
-        table(ui, "probe", found.facts().into_iter());
-    }
 }
 
 fn pacing(ui: &mut Ui, viewer: &mut Viewer) {

@@ -26,7 +26,16 @@ impl Display {
     /// Starts one; None where it is not installed.
     pub fn start() -> Option<Display> {
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", SCREEN, "-noreset", "-nolisten", "tcp"]);
+        command.args([
+            "-displayfd",
+            "1",
+            "-screen",
+            "0",
+            SCREEN,
+            "-noreset",
+            "-nolisten",
+            "tcp",
+        ]);
         let server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
         let mut server = server.ok()?;
         let mut output = server.stdout.take().expect("its output is a pipe");
@@ -66,7 +75,10 @@ impl Hand {
         let asked = connection.get_keyboard_mapping(first, last - first + 1);
         let mapping = asked.expect("it is asked").reply().expect("it answers");
         let each = usize::from(mapping.keysyms_per_keycode);
-        let keys = mapping.keysyms.chunks(each).map(|all| [all[0], *all.get(1).unwrap_or(&0)]);
+        let keys = mapping
+            .keysyms
+            .chunks(each)
+            .map(|all| [all[0], *all.get(1).unwrap_or(&0)]);
         Hand {
             keys: keys.collect(),
             first,
@@ -79,7 +91,12 @@ impl Hand {
     pub fn window(&self) -> Option<Window> {
         let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
         let shown = |&window: &Window| {
-            let asked = self.connection.get_window_attributes(window).ok()?.reply().ok()?;
+            let asked = self
+                .connection
+                .get_window_attributes(window)
+                .ok()?
+                .reply()
+                .ok()?;
             let size = self.connection.get_geometry(window).ok()?.reply().ok()?;
             (asked.map_state == xproto::MapState::VIEWABLE && size.width > 100).then_some(window)
         };
@@ -89,24 +106,39 @@ impl Hand {
     /// Gives keys to a window.
     pub fn focus(&self, window: Window) {
         let time = x11rb::CURRENT_TIME;
-        let done = self.connection.set_input_focus(InputFocus::PARENT, window, time);
+        let done = self
+            .connection
+            .set_input_focus(InputFocus::PARENT, window, time);
         done.expect("it is asked").check().expect("it has keys now");
     }
 
     fn fake(&self, kind: u8, detail: u8, x: i16, y: i16) {
-        let done = self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0);
-        done.expect("it is asked").check().expect("the display takes input");
+        let done = self
+            .connection
+            .xtest_fake_input(kind, detail, 0, self.root, x, y, 0);
+        done.expect("it is asked")
+            .check()
+            .expect("the display takes input");
     }
 
     /// Moves the mouse.
     pub fn to(&self, x: f64, y: f64) {
-        self.fake(xproto::MOTION_NOTIFY_EVENT, 0, x.round() as i16, y.round() as i16);
+        self.fake(
+            xproto::MOTION_NOTIFY_EVENT,
+            0,
+            x.round() as i16,
+            y.round() as i16,
+        );
         std::thread::sleep(Duration::from_millis(12));
     }
 
     /// Presses or releases a button of the mouse.
     pub fn button(&self, number: u8, down: bool) {
-        let kind = if down { xproto::BUTTON_PRESS_EVENT } else { xproto::BUTTON_RELEASE_EVENT };
+        let kind = if down {
+            xproto::BUTTON_PRESS_EVENT
+        } else {
+            xproto::BUTTON_RELEASE_EVENT
+        };
         self.fake(kind, number, 0, 0);
         std::thread::sleep(Duration::from_millis(25));
     }
@@ -137,7 +169,10 @@ impl Hand {
         };
         let shift = [0xffe1u32];
         let also = if shifted { &shift[..] } else { &[] };
-        let codes = held.iter().chain(also).filter_map(|&s| Some(self.code(s)?.0));
+        let codes = held
+            .iter()
+            .chain(also)
+            .filter_map(|&s| Some(self.code(s)?.0));
         let codes: Vec<u8> = codes.chain([code]).collect();
         for &code in &codes {
             self.fake(xproto::KEY_PRESS_EVENT, code, 0, 0);
@@ -161,15 +196,22 @@ impl Hand {
         let size = size.reply().expect("the window is there");
         let (width, height) = (size.width, size.height);
         let format = ImageFormat::Z_PIXMAP;
-        let image = self.connection.get_image(format, window, 0, 0, width, height, !0);
-        let image = image.expect("it is asked").reply().expect("the window is seen");
+        let image = self
+            .connection
+            .get_image(format, window, 0, 0, width, height, !0);
+        let image = image
+            .expect("it is asked")
+            .reply()
+            .expect("the window is seen");
         ([u32::from(width), u32::from(height)], image.data)
     }
 
     pub fn resize(&self, window: Window, [width, height]: [u32; 2]) {
         let size = ConfigureWindowAux::new().width(width).height(height);
         let done = self.connection.configure_window(window, &size);
-        done.expect("it is asked").check().expect("the window is there");
+        done.expect("it is asked")
+            .check()
+            .expect("the window is there");
     }
 
     /// Takes a window from the screen, as window managers do when they minimise it, or brings it back.
@@ -178,19 +220,27 @@ impl Hand {
             true => self.connection.map_window(window),
             false => self.connection.unmap_window(window),
         };
-        done.expect("it is asked").check().expect("the window is there");
+        done.expect("it is asked")
+            .check()
+            .expect("the window is there");
     }
 
     /// Asks a window to close, as window managers do (ICCCM, "Window Deletion").
     pub fn close(&self, window: Window) {
         let atom = |name: &str| {
             let asked = self.connection.intern_atom(false, name.as_bytes());
-            asked.expect("it is asked").reply().expect("it has a number").atom
+            asked
+                .expect("it is asked")
+                .reply()
+                .expect("it has a number")
+                .atom
         };
         let data = [atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0];
         let message = ClientMessageEvent::new(32, window, atom("WM_PROTOCOLS"), data);
         let mask = xproto::EventMask::NO_EVENT;
         let done = self.connection.send_event(false, window, mask, message);
-        done.expect("it is asked").check().expect("the window is there");
+        done.expect("it is asked")
+            .check()
+            .expect("the window is there");
     }
 }

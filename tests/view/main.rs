@@ -15,7 +15,10 @@ use display::Display;
 fn display() -> Option<Display> {
     let display = Display::start();
     if display.is_none() {
-        assert!(std::env::var_os("CI").is_none(), "Xvfb is missing: run scripts/setup");
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "Xvfb is missing: run scripts/setup"
+        );
         eprintln!("skipped: Xvfb is not installed (scripts/setup does it)");
     }
     display

@@ -13,7 +13,10 @@ struct Random(u64);
 
 impl Random {
     fn below(&mut self, most: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         ((self.0 >> 33) as u32) % most
     }
 }
@@ -27,7 +30,9 @@ fn random_input_breaks_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("box.obj"), BOX).expect("it is written");
     let mut session = Session::open(&display, folder.path(), &["box.obj", "builtin:cube"]);
-    let asked = std::env::var("HULLFORM_VIEW_SECONDS").ok().and_then(|text| text.parse().ok());
+    let asked = std::env::var("HULLFORM_VIEW_SECONDS")
+        .ok()
+        .and_then(|text| text.parse().ok());
     let end = Instant::now() + Duration::from_secs(asked.unwrap_or(SECONDS));
     let mut random = Random(7);
     while Instant::now() < end {
@@ -44,7 +49,10 @@ fn random_input_breaks_nothing() {
     assert_eq!(state["validation"], 0, "{state:#}");
     session.hand.close(session.window);
     let (code, words) = session.end();
-    assert!(code == Some(0) && !words.contains("panicked"), "{code:?} {words}");
+    assert!(
+        code == Some(0) && !words.contains("panicked"),
+        "{code:?} {words}"
+    );
 }
 
 fn one(session: &mut Session, random: &mut Random) {

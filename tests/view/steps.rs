@@ -33,9 +33,13 @@ fn a_session_of_looking_cutting_comparing_and_changing() {
     let (code, words) = session.end();
     assert_eq!(code, Some(0), "{words}");
     let settings = folder.path().join("home/config/hullform/view.json");
-    let settings: Value = serde_json::from_slice(&std::fs::read(settings).expect("settings"))
-        .expect("they are JSON");
-    assert!(settings["recent"][0].as_str().is_some_and(|file| file.ends_with("box.obj")));
+    let settings: Value =
+        serde_json::from_slice(&std::fs::read(settings).expect("settings")).expect("they are JSON");
+    assert!(
+        settings["recent"][0]
+            .as_str()
+            .is_some_and(|file| file.ends_with("box.obj"))
+    );
 }
 
 fn number(value: &Value) -> f64 {
@@ -45,7 +49,10 @@ fn number(value: &Value) -> f64 {
 /// What is seen of the scene, which must be another thing than before.
 fn other(session: &Session, before: &Picture, what: &str) -> Picture {
     let now = session.scene();
-    assert!(now.difference(before, false) > OTHER, "{what}: the picture is the same");
+    assert!(
+        now.difference(before, false) > OTHER,
+        "{what}: the picture is the same"
+    );
     now
 }
 
@@ -53,7 +60,9 @@ fn turns(session: &Session) {
     let before = session.scene();
     let yaw = number(&session.state()["camera"]["yaw"]);
     session.hand.drag(1, [500.0, 300.0], [560.0, 320.0]);
-    session.until("turned", |state| number(&state["camera"]["yaw"]) < yaw - 10.0);
+    session.until("turned", |state| {
+        number(&state["camera"]["yaw"]) < yaw - 10.0
+    });
     let turned = other(session, &before, "turned");
     let target = session.state()["camera"]["target"].clone();
     session.hand.drag(3, [500.0, 300.0], [540.0, 340.0]);
@@ -62,7 +71,9 @@ fn turns(session: &Session) {
     let distance = number(&session.state()["camera"]["distance"]);
     session.hand.button(4, true);
     session.hand.button(4, false);
-    session.until("nearer", |state| number(&state["camera"]["distance"]) < distance);
+    session.until("nearer", |state| {
+        number(&state["camera"]["distance"]) < distance
+    });
     session.press('o');
     session.until("parallel", |state| state["camera"]["orthographic"] == true);
     session.press('o');
@@ -80,12 +91,17 @@ fn cuts(session: &Session) {
     });
     let [x, y, width, height] = session.place("level");
     let middle = y + 0.5 * height;
-    session.hand.drag(1, [x + 0.45 * width, middle], [x + 0.2 * width, middle]);
+    session
+        .hand
+        .drag(1, [x + 0.45 * width, middle], [x + 0.2 * width, middle]);
     let state = session.until("coarser, by the slider", |state| {
         number(&state["cut"]["level"]) < 6.0 && number(&state["vertices"]) < vertices
     });
     let level = number(&state["cut"]["level"]);
-    assert!(level.fract() != 0.0, "sliders have levels between whole ones: {level}");
+    assert!(
+        level.fract() != 0.0,
+        "sliders have levels between whole ones: {level}"
+    );
     let before = session.scene();
     session.press('w');
     session.until("wires", |state| state["look"]["wireframe"] == true);
@@ -108,16 +124,24 @@ fn cuts(session: &Session) {
 fn refuses_and_keeps_the_picture(session: &Session) {
     let before = session.scene();
     session.press('m');
-    session.until("quadtree", |state| state["models"][0]["methods"][0] == "quadtree");
+    session.until("quadtree", |state| {
+        state["models"][0]["methods"][0] == "quadtree"
+    });
     session.press('m');
     let state = session.until("qas is for triangles", |state| {
         state["cut"]["method"] == "qas" && state["models"][0]["error"].is_string()
     });
-    assert_eq!(state["models"][0]["methods"][0], "quadtree", "the last picture stays");
+    assert_eq!(
+        state["models"][0]["methods"][0], "quadtree",
+        "the last picture stays"
+    );
     let [x, y, width, height] = session.area();
     let part = [0, 0, width, height / 2];
     let now = session.picture().part([x, y, width, height]);
-    assert!(now.part(part) == before.part(part), "the last picture stays");
+    assert!(
+        now.part(part) == before.part(part),
+        "the last picture stays"
+    );
     session.press('m');
     session.until("tables", |state| state["models"][0]["methods"][0] == "bft");
     for _ in 0..4 {
@@ -139,13 +163,21 @@ fn freezes(session: &Session) {
         session.hand.button(4, true);
         session.hand.button(4, false);
     }
-    let state = session.until("nearer", |s| number(&s["camera"]["distance"]) < 0.8 * distance);
+    let state = session.until("nearer", |s| {
+        number(&s["camera"]["distance"]) < 0.8 * distance
+    });
     let scenes = number(&state["scenes"]);
     session.picture();
-    assert_eq!(session.state()["vertices"], vertices, "levels are by the frozen camera");
+    assert_eq!(
+        session.state()["vertices"],
+        vertices,
+        "levels are by the frozen camera"
+    );
     session.press('z');
     session.until("free again", |state| {
-        state["frozen"] == false && number(&state["scenes"]) > scenes && state["vertices"] != vertices
+        state["frozen"] == false
+            && number(&state["scenes"]) > scenes
+            && state["vertices"] != vertices
     });
     session.press('a');
     session.press('4');
@@ -166,10 +198,15 @@ fn compares(session: &Session) {
     other(session, &split, "dragged");
     session.press('e');
     let state = session.until("errors are known", |state| {
-        state["compare"]["greatest"].as_array().is_some_and(|all| all.len() == 2)
+        state["compare"]["greatest"]
+            .as_array()
+            .is_some_and(|all| all.len() == 2)
     });
     let greatest = &state["compare"]["greatest"];
-    assert!(number(&greatest[0]) < 1e-6 && number(&greatest[1]) > 1e-3, "{greatest}");
+    assert!(
+        number(&greatest[0]) < 1e-6 && number(&greatest[1]) > 1e-3,
+        "{greatest}"
+    );
     other(session, &split, "a map");
     session.press('e');
     session.press('e');
@@ -181,8 +218,14 @@ fn compares(session: &Session) {
     let middle = [0, 1].map(|i| f64::from(middle[i]) + 0.5 * f64::from(middle[i + 2]));
     session.hand.to(middle[0], middle[1]);
     session.hand.to(middle[0] + 2.0, middle[1]);
-    let state = session.until("numbers under the cursor", |state| state["probe"].is_object());
-    assert!(number(&state["probe"]["error"]) < 0.01, "{}", state["probe"]);
+    let state = session.until("numbers under the cursor", |state| {
+        state["probe"].is_object()
+    });
+    assert!(
+        number(&state["probe"]["error"]) < 0.01,
+        "{}",
+        state["probe"]
+    );
 }
 
 fn changes(session: &Session) {
@@ -192,13 +235,19 @@ fn changes(session: &Session) {
     });
     pick_an_edge(session);
     let state = session.state();
-    let (creases, version) = (number(&state["models"][0]["creases"]), state["models"][0]["version"].clone());
+    let (creases, version) = (
+        number(&state["models"][0]["creases"]),
+        state["models"][0]["version"].clone(),
+    );
     let before = session.scene();
     let [x, y, width, height] = session.place("sharpness");
     let middle = y + 0.5 * height;
-    session.hand.drag(1, [x + 12.0, middle], [x + 0.5 * width, middle]);
+    session
+        .hand
+        .drag(1, [x + 12.0, middle], [x + 0.5 * width, middle]);
     let state = session.until("sharper", |state| {
-        number(&state["models"][0]["creases"]) != creases && state["models"][0]["version"] != version
+        number(&state["models"][0]["creases"]) != creases
+            && state["models"][0]["version"] != version
     });
     assert_eq!(state["models"][0]["steps"][0], 1, "a drag is one step");
     other(session, &before, "sharper");
@@ -222,7 +271,9 @@ fn changes(session: &Session) {
     session.press('q');
     session.hand.key(0xff1b, &[]);
     session.until("nothing is picked", |state| {
-        state["selection"]["edges"].as_array().is_some_and(Vec::is_empty)
+        state["selection"]["edges"]
+            .as_array()
+            .is_some_and(Vec::is_empty)
             && state["selection"]["tool"] == "look"
             && state["look"]["cage"] == false
     });
@@ -232,7 +283,9 @@ fn changes(session: &Session) {
 fn pick_an_edge(session: &Session) {
     let [x, y, width, height] = session.area().map(f64::from);
     for step in 0..40 {
-        session.hand.click([x + 0.5 * width, y + (0.5 - 0.01 * f64::from(step)) * height]);
+        session
+            .hand
+            .click([x + 0.5 * width, y + (0.5 - 0.01 * f64::from(step)) * height]);
         session.picture();
         let edges = session.state()["selection"]["edges"].clone();
         if edges.as_array().is_some_and(|edges| edges.len() == 1) {
@@ -249,23 +302,38 @@ fn saves_the_same_picture(session: &Session) {
     let shot = read_png(&session.file("hullform-1.png"));
     let [x, y, width, height] = session.area();
     let upper = [x, y, width, height / 2];
-    assert!(seen.part(upper).difference(&shot.part(upper), true) == 0.0, "a screenshot is what is seen");
+    assert!(
+        seen.part(upper).difference(&shot.part(upper), true) == 0.0,
+        "a screenshot is what is seen"
+    );
     session.until("saved", |_| true);
     session.hand.key(keys::F12, &[keys::SHIFT]);
     let rendered = session.file("hullform-2.png");
     session.control('c');
     let state = session.until("copied", |state| state["copied"].is_string());
-    let line = state["copied"].as_str().expect("a command line").to_string();
+    let line = state["copied"]
+        .as_str()
+        .expect("a command line")
+        .to_string();
     let program = env!("CARGO_BIN_EXE_hullform");
     let line = line.replacen("hullform ", &format!("{program} "), 1);
-    let done = Command::new("sh").args(["-c", &line]).current_dir(&session.folder).status();
+    let done = Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(&session.folder)
+        .status();
     assert!(done.expect("a shell").success(), "{line}");
     let again = read_png(&session.folder.join("hullform.png"));
     let rendered = read_png(&rendered);
-    assert!(rendered == again, "the copied command line makes the same picture");
+    assert!(
+        rendered == again,
+        "the copied command line makes the same picture"
+    );
     let scene = seen.part(session.area());
     let apart = scene.difference(&rendered, true);
-    assert!(apart < 0.6, "and it is what is seen, but for finer edges: {apart}");
+    assert!(
+        apart < 0.6,
+        "and it is what is seen, but for finer edges: {apart}"
+    );
 }
 
 fn reads_again(session: &Session) {
@@ -273,7 +341,9 @@ fn reads_again(session: &Session) {
     let file = session.folder.join("box.obj");
     let version = session.state()["models"][0]["version"][0].clone();
     std::fs::write(&file, BOX.replace("v 1 1 1", "v 2 2 2")).expect("it is written");
-    session.until("read again", |state| state["models"][0]["version"][0] != version);
+    session.until("read again", |state| {
+        state["models"][0]["version"][0] != version
+    });
     let changed = other(session, &before, "read again");
     std::fs::write(&file, BOX.replace("f 8 7 6 5", "f 8 7 6 99")).expect("it is written");
     let state = session.until("refused", |state| state["models"][0]["error"].is_string());
@@ -281,14 +351,19 @@ fn reads_again(session: &Session) {
     assert!(words.contains("box.obj:10"), "{words}");
     let [.., width, height] = session.area();
     let upper = [0, 0, width, height / 2];
-    assert!(session.scene().part(upper) == changed.part(upper), "the last good picture stays");
+    assert!(
+        session.scene().part(upper) == changed.part(upper),
+        "the last good picture stays"
+    );
     std::fs::write(&file, BOX).expect("it is written");
     session.until("read again", |state| state["models"][0]["error"].is_null());
 }
 
 fn goes_along_with_the_window(session: &Session) {
     session.hand.resize(session.window, [900, 640]);
-    session.until("smaller", |state| state["window"] == serde_json::json!([900, 640]));
+    session.until("smaller", |state| {
+        state["window"] == serde_json::json!([900, 640])
+    });
     assert_eq!(session.picture().size, [900, 640]);
     session.hand.show(session.window, false);
     session.press('f');

@@ -55,7 +55,9 @@ impl Picture {
         let sum: u64 = pairs
             .map(|(a, b)| {
                 let channel = |c: usize| if turned { b[2 - c] } else { b[c] };
-                (0..3).map(|c| u64::from(a[c].abs_diff(channel(c)))).sum::<u64>()
+                (0..3)
+                    .map(|c| u64::from(a[c].abs_diff(channel(c))))
+                    .sum::<u64>()
             })
             .sum();
         sum as f64 / (3 * self.size[0] * self.size[1]) as f64
@@ -63,7 +65,8 @@ impl Picture {
 
     /// How many colours it has.
     pub fn colours(&self) -> usize {
-        let all: std::collections::BTreeSet<&[u8]> = self.pixels.chunks(4).map(|p| &p[..3]).collect();
+        let all: std::collections::BTreeSet<&[u8]> =
+            self.pixels.chunks(4).map(|p| &p[..3]).collect();
         all.len()
     }
 }
@@ -101,7 +104,9 @@ impl Session {
             folder: folder.into(),
             log,
         };
-        session.until("something is drawn", |state| state["vertices"].as_u64() > Some(0));
+        session.until("something is drawn", |state| {
+            state["vertices"].as_u64() > Some(0)
+        });
         session.hand.focus(window);
         session
     }
@@ -174,7 +179,11 @@ impl Session {
     /// The middle of something that the state names a place of.
     pub fn place(&self, name: &str) -> [f64; 4] {
         let place = self.state()["places"][name].clone();
-        [0, 1, 2, 3].map(|i| place[i].as_f64().unwrap_or_else(|| panic!("{name} has a place")))
+        [0, 1, 2, 3].map(|i| {
+            place[i]
+                .as_f64()
+                .unwrap_or_else(|| panic!("{name} has a place"))
+        })
     }
 
     /// Waits for a file, whole, in the folder.
@@ -182,7 +191,11 @@ impl Session {
         let path = self.folder.join(name);
         let started = Instant::now();
         while !path.exists() {
-            assert!(started.elapsed() < PATIENCE, "{name} was not written: {:#}", self.state());
+            assert!(
+                started.elapsed() < PATIENCE,
+                "{name} was not written: {:#}",
+                self.state()
+            );
             std::thread::sleep(Duration::from_millis(20));
         }
         path
@@ -191,7 +204,12 @@ impl Session {
     /// Waits for the end: the exit code, and what it said.
     pub fn end(mut self) -> (Option<i32>, String) {
         let started = Instant::now();
-        while self.program.try_wait().expect("it can be waited for").is_none() {
+        while self
+            .program
+            .try_wait()
+            .expect("it can be waited for")
+            .is_none()
+        {
             if started.elapsed() > PATIENCE {
                 let _ = self.program.kill();
                 panic!("the program does not end");
@@ -205,18 +223,25 @@ impl Session {
 
     /// Whether it still runs.
     pub fn runs(&mut self) -> bool {
-        self.program.try_wait().expect("it can be waited for").is_none()
+        self.program
+            .try_wait()
+            .expect("it can be waited for")
+            .is_none()
     }
 }
 
 /// A picture from a file, four bytes a pixel, red first.
 pub fn read_png(path: &Path) -> Picture {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("there is a picture"));
-    let mut reader = png::Decoder::new(file).read_info().expect("it is a picture");
+    let mut reader = png::Decoder::new(file)
+        .read_info()
+        .expect("it is a picture");
     let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
     let info = reader.next_frame(&mut bytes).expect("it has pixels");
     let each = info.color_type.samples();
-    let pixels = bytes.chunks(each).flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255]);
+    let pixels = bytes
+        .chunks(each)
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255]);
     Picture {
         size: [info.width, info.height],
         pixels: pixels.collect(),

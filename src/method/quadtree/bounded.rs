@@ -6,6 +6,7 @@
 
 use crate::error::{Error, Place, Result};
 use crate::mesh::Model;
+use crate::mesh::sharpness::is_semi_sharp;
 use crate::mesh::topology::Topology;
 
 /// Rings of so many corners of faces are what models are made of, however many there are.
@@ -13,6 +14,10 @@ const ORDINARY: u64 = 1 << 10;
 
 /// The corners that all larger rings may have. A pole of 1,600 triangles, or two thousand quads, or an n-gon of 5,000 corners.
 const MOST: u64 = 3 << 23;
+
+/// Where a vertex has edges of more different sharpness than these, faces around it hardly share plans, and a plan has hundreds of sums over the ring.
+const ALIKE: usize = 4;
+const SUMS: u64 = 128;
 
 /// Refuses a mesh whose rings have more corners than will be planned for.
 ///
@@ -40,13 +45,31 @@ pub fn check(model: &Model) -> Result<()> {
             } else {
                 vertices.len() as u64
             };
-            total += parts * ring;
+            let differ = vertices
+                .iter()
+                .any(|&vertex| around[vertex as usize] > ORDINARY && is_varied(topology, vertex));
+            total += parts * ring * if differ { SUMS } else { 1 };
         }
         if total > MOST {
             return Err(refusal(topology, &around, face));
         }
     }
     Ok(())
+}
+
+/// Whether the semi-sharp edges at a vertex are of many kinds.
+fn is_varied(topology: &Topology, vertex: u32) -> bool {
+    let mut kinds: Vec<u32> = Vec::new();
+    for edge in topology.sharp_edges(vertex) {
+        let sharpness = topology.edge(edge).sharpness;
+        if is_semi_sharp(sharpness) && !kinds.contains(&sharpness.to_bits()) {
+            kinds.push(sharpness.to_bits());
+        }
+        if kinds.len() > ALIKE {
+            return true;
+        }
+    }
+    false
 }
 
 /// Counts what surrounds faces, each face once.

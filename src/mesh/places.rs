@@ -18,6 +18,14 @@ pub(crate) struct Places {
 }
 
 impl Places {
+    /// The place of a number, if it was met.
+    pub fn find(&self, number: u32) -> Option<usize> {
+        if self.known.is_empty() {
+            return self.found.iter().position(|&found| found == number);
+        }
+        self.known.get(&number).copied()
+    }
+
     /// The place of a number; the next one if it was not met before.
     pub fn of(&mut self, number: u32) -> usize {
         let next = self.found.len();
@@ -58,9 +66,11 @@ mod tests {
             let number = |i: usize| (i as u32).wrapping_mul(0x9e37_79b9);
             let mut places = Places::default();
             for i in 0..count {
+                assert_eq!(places.find(number(i)), None, "{i} of {count}");
                 assert!(places.add(number(i)), "{i} of {count}");
             }
             for i in 0..count {
+                assert_eq!(places.find(number(i)), Some(i), "{i} of {count}");
                 assert_eq!(places.of(number(i)), i, "{i} of {count}");
             }
             assert!(places.found().iter().copied().eq((0..count).map(number)));

@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::error::{Error, Misuse, Result};
+use crate::mesh::places::Places;
 use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::{FaceCorner, Topology};
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
@@ -154,13 +155,13 @@ impl Ring {
         for corner in 0..corners as usize {
             walk.words.push(
                 topology
-                    .vertex_sharpness(walk.vertices.all[corner])
+                    .vertex_sharpness(walk.vertices.found()[corner])
                     .to_bits(),
             );
         }
         walk.edges(&faces, corners as usize);
         Ring {
-            vertices: walk.vertices.all,
+            vertices: walk.vertices.found().to_vec(),
             configuration: Configuration { words: walk.words },
             faces: faces.iter().map(|start| start.face).collect(),
             start: start.corner,
@@ -228,57 +229,19 @@ fn least_starts(topology: &Topology, face: u32) -> SmallVec<[Start; 8]> {
     least
 }
 
-/// Lists up to this length are searched from their beginning; longer ones have a table.
-const SHORT: usize = 32;
-
-/// Numbers, each once, in the order in which they come.
-#[derive(Default)]
-struct Once {
-    all: Vec<u32>,
-    /// Their places, once there are many.
-    places: FxHashMap<u32, u32>,
-}
-
-impl Once {
-    /// The place of a number, if it is there.
-    fn find(&self, number: u32) -> Option<u32> {
-        if self.all.len() <= SHORT {
-            let place = self.all.iter().position(|&known| known == number);
-            return place.map(|place| place as u32);
-        }
-        self.places.get(&number).copied()
-    }
-
-    /// Its place, the next one if it is new; and whether it is.
-    fn place(&mut self, number: u32) -> (u32, bool) {
-        if let Some(place) = self.find(number) {
-            return (place, false);
-        }
-        let place = self.all.len() as u32;
-        self.all.push(number);
-        if self.all.len() == SHORT + 1 {
-            self.places = self.all.iter().copied().zip(0..).collect();
-        } else if self.all.len() > SHORT {
-            self.places.insert(number, place);
-        }
-        (place, true)
-    }
-}
-
 /// Every face that has one of so many vertices of the first one: around each corner in turn, counter-clockwise and then, where a boundary stopped the
 /// walk, clockwise, or the other way around; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
 fn surrounding_faces(topology: &Topology, start: Start, corners: u32) -> SmallVec<[Start; 16]> {
     let Start { face, mirrored, .. } = start;
     let arity = topology.face(face).len() as u32;
     let mut found = SmallVec::from_slice(&[start]);
-    let mut known = Once::default();
-    known.place(face);
+    let mut known = Places::default();
+    known.add(face);
     let mut add = |next: u32, vertex: u32| {
-        if known.place(next).1 {
-            let corner = topology.face(next).iter().position(|&v| v == vertex);
+        if known.add(next) {
             found.push(Start {
                 face: next,
-                corner: corner.expect("the walk stays at the vertex") as u32,
+                corner: topology.corner_of(next, vertex),
                 mirrored,
             });
         }
@@ -325,7 +288,7 @@ fn apart<'a>(
 /// Writes down a ring and numbers its vertices on the way.
 struct Walk<'a> {
     topology: &'a Topology,
-    vertices: Once,
+    vertices: Places,
     words: Vec<u32>,
 }
 
@@ -334,10 +297,7 @@ impl Walk<'_> {
     fn new(topology: &Topology, faces: usize) -> Walk<'_> {
         Walk {
             topology,
-            vertices: Once {
-                all: Vec::with_capacity(2 * faces),
-                ..Once::default()
-            },
+            vertices: Places::default(),
             words: Vec::with_capacity(6 + 5 * faces + 5),
         }
     }
@@ -349,7 +309,7 @@ impl Walk<'_> {
     }
 
     fn number(&mut self, vertex: u32) -> u32 {
-        self.vertices.place(vertex).0
+        self.vertices.of(vertex) as u32
     }
 
     fn face(&mut self, start: Start) {
@@ -364,7 +324,7 @@ impl Walk<'_> {
 
     /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
     fn edges(&mut self, faces: &[Start], corners: usize) {
-        let mut seen = Once::default();
+        let mut seen = Places::default();
         for start in faces {
             let edges = self.topology.face_edges(start.face);
             let arity = edges.len() as u32;
@@ -375,14 +335,14 @@ impl Walk<'_> {
                 }
                 let ends = edge.vertices.map(|vertex| self.vertices.find(vertex));
                 let [a, b] = ends.map(|end| end.expect("the faces have their edges' ends"));
-                if (a.min(b) as usize) < corners && seen.place(number).1 {
+                if a.min(b) < corners && seen.add(number) {
                     let ends = if a < b { [a, b] } else { [b, a] };
                     let next = if a < b {
                         edge.next
                     } else {
                         [edge.next[1], edge.next[0]]
                     };
-                    self.words.extend(ends);
+                    self.words.extend(ends.map(|end| end as u32));
                     self.words
                         .extend([edge.sharpness, next[0], next[1]].map(f32::to_bits));
                 }

@@ -14,6 +14,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::mesh::sharpness::is_sharp;
 use crate::mesh::topology::{FaceCorner, Topology};
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
+use crate::plan::once::Once;
 
 /// What a plan depends on. Equal configurations are equal words; the words hold the whole local mesh, so no two differ by accident.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -228,43 +229,6 @@ fn least_starts(topology: &Topology, face: u32) -> SmallVec<[Start; 8]> {
     least
 }
 
-/// Lists up to this length are searched from their beginning; longer ones have a table.
-const SHORT: usize = 32;
-
-/// Numbers, each once, in the order in which they come.
-#[derive(Default)]
-struct Once {
-    all: Vec<u32>,
-    /// Their places, once there are many.
-    places: FxHashMap<u32, u32>,
-}
-
-impl Once {
-    /// The place of a number, if it is there.
-    fn find(&self, number: u32) -> Option<u32> {
-        if self.all.len() <= SHORT {
-            let place = self.all.iter().position(|&known| known == number);
-            return place.map(|place| place as u32);
-        }
-        self.places.get(&number).copied()
-    }
-
-    /// Its place, the next one if it is new; and whether it is.
-    fn place(&mut self, number: u32) -> (u32, bool) {
-        if let Some(place) = self.find(number) {
-            return (place, false);
-        }
-        let place = self.all.len() as u32;
-        self.all.push(number);
-        if self.all.len() == SHORT + 1 {
-            self.places = self.all.iter().copied().zip(0..).collect();
-        } else if self.all.len() > SHORT {
-            self.places.insert(number, place);
-        }
-        (place, true)
-    }
-}
-
 /// Every face that has one of so many vertices of the first one: around each corner in turn, counter-clockwise and then, where a boundary stopped the
 /// walk, clockwise, or the other way around; last those that only a non-manifold vertex joins. Each with the corner at which its vertices begin.
 fn surrounding_faces(topology: &Topology, start: Start, corners: u32) -> SmallVec<[Start; 16]> {
@@ -334,10 +298,7 @@ impl Walk<'_> {
     fn new(topology: &Topology, faces: usize) -> Walk<'_> {
         Walk {
             topology,
-            vertices: Once {
-                all: Vec::with_capacity(2 * faces),
-                ..Once::default()
-            },
+            vertices: Once::with_capacity(2 * faces),
             words: Vec::with_capacity(6 + 5 * faces + 5),
         }
     }

@@ -7,6 +7,7 @@ pub mod database;
 mod edge;
 mod level;
 mod nearby;
+mod once;
 mod packed_rows;
 mod packing;
 mod rows;

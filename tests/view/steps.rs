@@ -176,12 +176,12 @@ fn freezes(session: &Session) {
     let vertices = state["vertices"].clone();
     let distance = number(&state["camera"]["distance"]);
     session.hand.to(540.0, 340.0);
-    for _ in 0..4 {
-        session.hand.button(4, true);
-        session.hand.button(4, false);
+    for _ in 0..6 {
+        session.hand.button(5, true);
+        session.hand.button(5, false);
     }
-    let state = session.until("nearer", |s| {
-        number(&s["camera"]["distance"]) < 0.8 * distance
+    let state = session.until("farther", |s| {
+        number(&s["camera"]["distance"]) > 1.8 * distance
     });
     let scenes = number(&state["scenes"]);
     session.picture();
@@ -194,7 +194,7 @@ fn freezes(session: &Session) {
     session.until("free again", |state| {
         state["frozen"] == false
             && number(&state["scenes"]) > scenes
-            && state["vertices"] != vertices
+            && number(&state["vertices"]) < number(&vertices)
     });
     session.press('a');
     session.press('4');

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::display::{Display, Hand};
 
 /// How long anything may take: software draws, and machines are busy.
-const PATIENCE: Duration = Duration::from_secs(90);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Keys by the numbers that X11 has for their symbols.
 pub mod keys {

@@ -52,6 +52,8 @@ pub struct Drawn {
     pub cache: Option<Owned<CachePipelines>>,
     /// What a frame draws, and for which levels it was decided.
     pub list: Option<DrawList>,
+    /// The vertices of that.
+    pub vertices: u64,
     /// Seconds to prepare it, and to bring it to the device.
     pub seconds: [f64; 2],
     /// Why methods that come before the one that did it refused.
@@ -162,6 +164,7 @@ impl Context {
             surface,
             cache,
             list: None,
+            vertices: 0,
             seconds: [0.0; 2],
             refusals: Vec::new(),
         })

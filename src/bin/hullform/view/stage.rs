@@ -6,12 +6,12 @@ use std::time::Instant;
 use glam::DVec3;
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{Fill, Pipelines, Residence, View, ring};
+use hullform::gpu::{DrawList, Fill, Pipelines, Residence, View, ring};
 use hullform::host::{
     ColouredTriangles, ColouredVertex, OffscreenTarget, Owned, Style, TimestampQuery,
 };
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Displacement};
+use hullform::method::{DepthTags, Displacement, Prepared};
 
 use super::context::{Context, Drawn, Key};
 use super::overlay::Overlay;
@@ -329,6 +329,7 @@ impl Staged {
             let allocator = &mut *device.allocator();
             // SAFETY: nothing is drawn at this time; device and allocator made the surface.
             unsafe { drawn.surface.write_draws(device.raw(), allocator, &list) }?;
+            drawn.vertices = vertices(drawn.surface.prepared(), &list);
             drawn.list = Some(list);
         }
         self.decided = Some(decision);
@@ -401,6 +402,7 @@ impl Drawn {
         let Some(list) = &self.list else {
             return Ok(());
         };
+        cost.vertices += self.vertices;
         for (round, fill) in (0..).zip(Stage::fills(viewer)) {
             let key = self.key(style(self, viewer, fill));
             let Some(pipelines) = context.ready(&key) else {
@@ -418,7 +420,7 @@ impl Drawn {
         &self,
         cmd: vk::CommandBuffer,
         context: &Context,
-        list: &hullform::gpu::DrawList,
+        list: &DrawList,
         round: u32,
         pipelines: &Arc<Owned<Pipelines>>,
         cost: &mut Cost,
@@ -436,10 +438,18 @@ impl Drawn {
             }
             cost.batches += 1;
             cost.draws += batch.draws().len();
-            cost.vertices += u64::from(batch.vertices());
         }
         Ok(())
     }
+}
+
+/// The vertices that are evaluated of all patches.
+fn vertices(prepared: &Prepared, list: &DrawList) -> u64 {
+    let passes = prepared.passes.iter().enumerate();
+    let patches = passes
+        .flat_map(|(pass, all)| (0..all.patches.len() as u32).map(move |patch| (pass, patch)));
+    let counts = patches.map(|(pass, patch)| list.vertices(prepared, pass, patch));
+    counts.map(u64::from).sum()
 }
 
 /// The background, as `render` has it: two triangles behind everything.

@@ -10,7 +10,7 @@ pub const MOUSE: [(&str, &str); 6] = [
     ("drag", "turn"),
     ("Shift+drag, right or middle", "move"),
     ("wheel, pinch", "nearer or farther"),
-    ("double click", "show all"),
+    ("double click", "show all of it"),
     ("click", "pick, or numbers under the cursor"),
     ("Ctrl+drag", "move what is picked"),
 ];

@@ -103,13 +103,21 @@ impl Hand {
         tree.children.iter().find_map(shown)
     }
 
-    /// Gives keys to a window.
+    /// Gives keys to a window. One that was away is there again a moment after it was asked to be.
     pub fn focus(&self, window: Window) {
-        let time = x11rb::CURRENT_TIME;
-        let done = self
-            .connection
-            .set_input_focus(InputFocus::PARENT, window, time);
-        done.expect("it is asked").check().expect("it has keys now");
+        let asked = || {
+            let time = x11rb::CURRENT_TIME;
+            let asked = self
+                .connection
+                .set_input_focus(InputFocus::PARENT, window, time);
+            asked.expect("it is asked").check()
+        };
+        let tries = (0..100).map(|_| {
+            std::thread::sleep(Duration::from_millis(20));
+            asked()
+        });
+        let done = tries.into_iter().find(Result::is_ok);
+        assert!(done.is_some(), "the window takes no keys");
     }
 
     fn fake(&self, kind: u8, detail: u8, x: i16, y: i16) {

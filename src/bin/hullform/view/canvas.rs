@@ -13,6 +13,9 @@ use super::viewport::Area;
 /// How panels find the image, with the scene in it.
 const DRAWN: vk::ImageLayout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
 
+/// What records the scene.
+pub type Record<'r> = dyn FnMut(vk::CommandBuffer, &OffscreenTarget) -> Result<()> + 'r;
+
 /// What egui wants drawn.
 #[derive(Default)]
 pub struct Panels {
@@ -132,7 +135,7 @@ impl Canvas {
         &mut self,
         panels: &Panels,
         area: Area,
-        scene: Option<&mut dyn FnMut(vk::CommandBuffer, &OffscreenTarget) -> Result<()>>,
+        scene: Option<&mut Record<'_>>,
     ) -> Result<Shown> {
         self.take_textures(panels)?;
         let (Some(target), Some(renderer)) = (&self.target, &mut self.panels) else {

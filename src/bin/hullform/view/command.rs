@@ -84,7 +84,7 @@ pub enum Command {
     /// Saves what `render` makes of it.
     Render,
     /// Copies the command line.
-    CopyCommand,
+    CopyLine,
     /// The next file of the folder, or the one before.
     Neighbour(bool),
     /// Reads files again.
@@ -191,7 +191,7 @@ pub const KEYS: &[Binding] = &[
     plain(Key::Space, Command::Play, "play or pause"),
     plain(Key::F12, Command::Screenshot, "save what is seen"),
     shift(Key::F12, Command::Render, "save what render makes of it"),
-    control(Key::C, Command::CopyCommand, "copy the command line"),
+    control(Key::C, Command::CopyLine, "copy the command line"),
     plain(
         Key::Period,
         Command::Neighbour(true),
@@ -227,7 +227,7 @@ pub fn of_event(event: &egui::Event) -> Option<Command> {
     match event {
         egui::Event::Text(text) if text == "?" => Some(Command::Sheet),
         // egui takes these keys for its own.
-        egui::Event::Copy => Some(Command::CopyCommand),
+        egui::Event::Copy => Some(Command::CopyLine),
         egui::Event::Key {
             key,
             pressed: true,
@@ -357,7 +357,7 @@ impl Viewer {
             Command::Sheet => self.sheet ^= true,
             Command::Screenshot => self.wishes.push(Wish::Screenshot),
             Command::Render => self.wishes.push(Wish::Render),
-            Command::CopyCommand => self.wishes.push(Wish::CopyCommand),
+            Command::CopyLine => self.wishes.push(Wish::CopyCommand),
             Command::Save => self.wishes.push(Wish::Save),
             Command::Quit => self.wishes.push(Wish::Quit),
             Command::Reload => self.parts.iter_mut().for_each(|part| part.unread = true),

@@ -124,10 +124,10 @@ impl Measured {
             }
             for number in range.clone() {
                 let corners = surface.triangles[number].map(|corner| position(surface, corner));
-                if let Some((distance, u, v)) = ray.hits(corners) {
-                    if best.is_none_or(|(nearest, ..)| distance < nearest) {
-                        best = Some((distance, number, u, v));
-                    }
+                if let Some((distance, u, v)) = ray.hits(corners)
+                    && best.is_none_or(|(nearest, ..)| distance < nearest)
+                {
+                    best = Some((distance, number, u, v));
                 }
             }
         }

@@ -61,10 +61,10 @@ fn sharpness(ui: &mut Ui, viewer: &mut Viewer) {
         let held = response.dragged() || response.is_pointer_button_down_on();
         viewer.sharpen(|_| sharpness, held);
     }
-    if response.drag_stopped() {
-        if let Some(part) = viewer.edited() {
-            part.drop_it();
-        }
+    if response.drag_stopped()
+        && let Some(part) = viewer.edited()
+    {
+        part.drop_it();
     }
 }
 

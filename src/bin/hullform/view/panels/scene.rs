@@ -95,10 +95,10 @@ fn mouse(ui: &mut Ui, viewer: &mut Viewer, rect: Rect, response: &Response) {
     } else if left {
         viewer.orbit.turn(by);
     }
-    if response.drag_stopped() {
-        if let Some(part) = viewer.edited() {
-            part.drop_it();
-        }
+    if response.drag_stopped()
+        && let Some(part) = viewer.edited()
+    {
+        part.drop_it();
     }
     let Some(at) = response.hover_pos() else {
         return;

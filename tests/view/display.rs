@@ -112,7 +112,7 @@ impl Hand {
                 .set_input_focus(InputFocus::PARENT, window, time);
             asked.expect("it is asked").check()
         };
-        let tries = (0..100).map(|_| {
+        let tries = (0..1000).map(|_| {
             std::thread::sleep(Duration::from_millis(20));
             asked()
         });

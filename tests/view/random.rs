@@ -45,7 +45,8 @@ fn random_input_breaks_nothing() {
     let frames = session.state()["frames"].as_u64();
     session.press('f');
     session.press('1');
-    let state = session.until("it answers", |state| state["frames"].as_u64() > frames);
+    // Something may play by now: then there is always something left to do.
+    let state = session.sooner_or_later("it answers", |state| state["frames"].as_u64() > frames);
     assert_eq!(state["validation"], 0, "{state:#}");
     session.hand.close(session.window);
     let (code, words) = session.end();

@@ -121,10 +121,15 @@ impl Session {
 
     /// Waits for a state with nothing left to do.
     pub fn until(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value {
+        self.sooner_or_later(what, |state| state["settled"] == true && is_so(state))
+    }
+
+    /// Waits for a state.
+    pub fn sooner_or_later(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value {
         let started = Instant::now();
         loop {
             let state = self.state();
-            if state["settled"] == true && is_so(&state) {
+            if is_so(&state) {
                 return state;
             }
             assert!(started.elapsed() < PATIENCE, "{what}: never, but {state:#}");

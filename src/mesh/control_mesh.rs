@@ -1,7 +1,8 @@
 //! The control mesh: positions, faces and the tags that shape their limit surface.
 
+mod checks;
+
 use glam::{DVec2, DVec3};
-use smallvec::SmallVec;
 
 use crate::error::{Error, Place, Result};
 use crate::mesh::Scheme;
@@ -307,38 +308,13 @@ impl ControlMeshBuilder {
             mut mesh,
             face_sizes,
         } = self;
-        mesh.face_offsets = offsets(&face_sizes, mesh.face_vertices.len())?;
-        check_faces(&mesh)?;
-        check_positions(&mesh)?;
-        check_tags(&mesh)?;
+        mesh.face_offsets = checks::offsets(&face_sizes, mesh.face_vertices.len())?;
+        checks::check_faces(&mesh)?;
+        checks::check_positions(&mesh)?;
+        checks::check_tags(&mesh)?;
         mesh.options.scheme.check(&mesh)?;
         Ok(mesh)
     }
-}
-
-fn offsets(face_sizes: &[u32], vertices: usize) -> Result<Vec<u32>> {
-    let total: u64 = face_sizes.iter().map(|&size| u64::from(size)).sum();
-    if face_sizes.is_empty() {
-        return Err(Error::input(
-            Place::Mesh,
-            "there is no face",
-            "give at least one face of three or more vertices",
-        ));
-    }
-    if total != vertices as u64 || total > u64::from(u32::MAX) {
-        return Err(Error::input(
-            Place::Mesh,
-            format!("the face sizes add up to {total}, but {vertices} face vertices are given"),
-            "give one vertex index for every corner of every face",
-        ));
-    }
-    let mut next = 0;
-    Ok(std::iter::once(0)
-        .chain(face_sizes.iter().map(|&size| {
-            next += size;
-            next
-        }))
-        .collect())
 }
 
 /// The greatest coordinate of a vertex that a face uses: so what is computed from several of them, derivatives too, stays within f64.
@@ -347,179 +323,8 @@ pub(crate) const GREATEST_COORDINATE: f64 = 1e300;
 /// The greatest texture coordinate of a face's corner: what is interpolated between two of them stays within f32.
 pub(crate) const GREATEST_TEXTURE_COORDINATE: f64 = 1e30;
 
-fn check_positions(mesh: &ControlMesh) -> Result<()> {
-    // Not a number is not within bounds either.
-    let is_fine = |p: &DVec3| p.abs().cmple(DVec3::splat(GREATEST_COORDINATE)).all();
-    if mesh.positions.iter().all(is_fine) {
-        return Ok(());
-    }
-    let refused = |vertex: usize, problem: &str, remedy: &str| {
-        let problem = format!("its position {} {problem}", mesh.positions[vertex]);
-        Err(Error::input(Place::Vertex(vertex), problem, remedy))
-    };
-    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        let remedy = "replace NaN and infinite coordinates by numbers";
-        return refused(vertex, "is not finite", remedy);
-    }
-    let is_large = |vertex: u32| {
-        let position = mesh.positions[vertex as usize];
-        position.abs().max_element() > GREATEST_COORDINATE
-    };
-    match mesh.face_vertices.iter().find(|&&vertex| is_large(vertex)) {
-        None => Ok(()),
-        Some(&vertex) => refused(
-            vertex as usize,
-            "is beyond what double precision can calculate with",
-            "coordinates go up to 1e300: scale the mesh down",
-        ),
-    }
-}
-
-fn check_faces(mesh: &ControlMesh) -> Result<()> {
-    let count = mesh.vertex_count();
-    for (number, face) in mesh.faces().enumerate() {
-        let place = || Place::Face(number);
-        if face.len() < 3 {
-            return Err(Error::input(
-                place(),
-                format!("it has {} vertices", face.len()),
-                "faces need three or more vertices",
-            ));
-        }
-        if let Some(vertex) = face.iter().find(|&&vertex| vertex as usize >= count) {
-            return Err(Error::input(
-                place(),
-                format!("it names vertex {vertex}, but the mesh has {count} vertices"),
-                "vertex indices must be below the number of vertices",
-            ));
-        }
-        if let Some(vertex) = named_twice(face) {
-            return Err(Error::input(
-                place(),
-                format!("it names vertex {vertex} twice"),
-                "remove the repeated vertex, or split the face",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// The least vertex that a face names more than once.
-fn named_twice(face: &[u32]) -> Option<u32> {
-    if let &[a, b, c, d] = face
-        && a != b
-        && a != c
-        && a != d
-        && b != c
-        && b != d
-        && c != d
-    {
-        return None;
-    }
-    let mut sorted: SmallVec<[u32; 16]> = face.into();
-    sorted.sort_unstable();
-    let twice = sorted.windows(2).find(|pair| pair[0] == pair[1])?;
-    Some(twice[0])
-}
-
 /// The edges that creases of a mesh name.
 pub(super) fn creased_edges(mesh: &ControlMesh) -> CreasedEdges {
     let ends = mesh.creases.iter().map(|crease| crease.vertices);
     CreasedEdges::new(mesh.vertex_count(), ends)
-}
-
-fn check_tags(mesh: &ControlMesh) -> Result<()> {
-    let edges = creased_edges(mesh);
-    let mut met = vec![false; edges.count()];
-    if !met.is_empty() {
-        for face in mesh.faces() {
-            for (i, &vertex) in face.iter().enumerate() {
-                let next = face[if i + 1 < face.len() { i + 1 } else { 0 }];
-                if let Some(edge) = edges.number([vertex, next]) {
-                    met[edge] = true;
-                }
-            }
-        }
-    }
-    for crease in &mesh.creases {
-        let [a, b] = crease.vertices;
-        let place = Place::Edge(a as usize, b as usize);
-        if !edges.number(crease.vertices).is_some_and(|edge| met[edge]) {
-            return Err(Error::input(
-                place,
-                "a crease names it, but no face has this edge",
-                "creases need two neighbouring vertices of a face",
-            ));
-        }
-        check_sharpness(place, crease.sharpness)?;
-    }
-    for corner in &mesh.corners {
-        let place = Place::Vertex(corner.vertex as usize);
-        if corner.vertex as usize >= mesh.vertex_count() {
-            return Err(Error::input(
-                place,
-                "a corner names it, but there is no such vertex",
-                "vertex indices must be below the number of vertices",
-            ));
-        }
-        check_sharpness(place, corner.sharpness)?;
-    }
-    if let Some(&hole) = mesh
-        .holes
-        .iter()
-        .find(|&&hole| hole as usize >= mesh.face_count())
-    {
-        return Err(Error::input(
-            Place::Face(hole as usize),
-            "a hole names it, but there is no such face",
-            "face indices must be below the number of faces",
-        ));
-    }
-    check_texture(mesh)
-}
-
-fn check_sharpness(place: Place, sharpness: f32) -> Result<()> {
-    if sharpness >= 0.0 {
-        return Ok(());
-    }
-    Err(Error::input(
-        place,
-        format!("its sharpness {sharpness} is not a number of 0 or more"),
-        "sharpness goes from 0 (smooth) to 10 (infinite)",
-    ))
-}
-
-fn check_texture(mesh: &ControlMesh) -> Result<()> {
-    let Some(texture) = &mesh.texture else {
-        return Ok(());
-    };
-    let (corners, values) = (mesh.face_vertices.len(), texture.values.len());
-    let problem = if texture.indices.len() != corners {
-        format!(
-            "{} texture indices are given for {corners} face corners",
-            texture.indices.len()
-        )
-    } else if let Some(index) = texture
-        .indices
-        .iter()
-        .find(|&&index| index as usize >= values)
-    {
-        format!("texture index {index} is out of range, there are {values} texture coordinates")
-    } else if let Some(value) = texture.values.iter().find(|value| !value.is_finite()) {
-        format!("the texture coordinate {value} is not finite")
-    } else if let Some(value) = texture
-        .indices
-        .iter()
-        .map(|&index| texture.values[index as usize])
-        .find(|value| value.abs().max_element() > GREATEST_TEXTURE_COORDINATE)
-    {
-        format!("the texture coordinate {value} is beyond what single precision can interpolate")
-    } else {
-        return Ok(());
-    };
-    Err(Error::input(
-        Place::Mesh,
-        problem,
-        "give one texture coordinate of at most 1e30 for every face corner",
-    ))
 }

@@ -4,7 +4,7 @@ mod checks;
 
 use glam::{DVec2, DVec3};
 
-use crate::error::{Error, Place, Result};
+use crate::error::Result;
 use crate::mesh::Scheme;
 use crate::mesh::creased_edges::CreasedEdges;
 use crate::mesh::placement::{Placement, bounds};

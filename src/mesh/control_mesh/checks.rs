@@ -2,7 +2,11 @@
 
 use smallvec::SmallVec;
 
-use super::*;
+use crate::error::{Error, Place, Result};
+use crate::mesh::control_mesh::{
+    ControlMesh, GREATEST_COORDINATE, GREATEST_TEXTURE_COORDINATE, creased_edges,
+};
+use glam::DVec3;
 
 pub(super) fn offsets(face_sizes: &[u32], vertices: usize) -> Result<Vec<u32>> {
     let total: u64 = face_sizes.iter().map(|&size| u64::from(size)).sum();

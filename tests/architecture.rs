@@ -380,7 +380,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 35] = [
+const NAMED: [(&str, &str, &str); 39] = [
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -410,6 +410,10 @@ const NAMED: [(&str, &str, &str); 35] = [
     ("tests/pictures.rs", "pn", WORDS),
     ("tests/cli_bench.rs", "quadtree", WORDS),
     ("tests/cli_bench.rs", "flat", WORDS),
+    ("tests/cli_evaluation.rs", "qas", WORDS),
+    ("tests/cli_evaluation.rs", "phong", WORDS),
+    ("tests/cli_evaluation.rs", "flat", WORDS),
+    ("tests/cli_evaluation.rs", "bft", WORDS),
     ("tests/corners.rs", "quadtree", PLANS),
     ("tests/interruption.rs", "flat", WORDS),
     ("tests/view/steps.rs", "quadtree", WORDS),

@@ -261,7 +261,9 @@ fn eight_processes_share_a_file() {
             let output = process.wait_with_output().expect("it ends");
             assert!(output.status.success());
             let mut facts: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-            facts["build_seconds"] = Value::Null;
+            for measured in ["build_seconds", "seconds", "faces_per_second", "peak_bytes"] {
+                facts[measured] = Value::Null;
+            }
             facts
         })
         .collect();

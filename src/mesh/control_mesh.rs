@@ -187,7 +187,7 @@ impl ControlMesh {
     /// The same mesh under another scheme.
     ///
     /// # Errors
-    /// [`Error::Input`] for faces and tags that the scheme knows nothing of, see [`Scheme::check`].
+    /// [`Error::Input`](crate::Error::Input) for faces and tags that the scheme knows nothing of, see [`Scheme::check`].
     pub fn with_scheme(mut self, scheme: Scheme) -> Result<ControlMesh> {
         self.options.scheme = scheme;
         scheme.check(&self)?;
@@ -300,7 +300,7 @@ impl ControlMeshBuilder {
     /// Checks everything and hands out the mesh.
     ///
     /// # Errors
-    /// [`Error::Input`] for a mesh without faces, a face of fewer than three vertices or one that names a vertex twice,
+    /// [`Error::Input`](crate::Error::Input) for a mesh without faces, a face of fewer than three vertices or one that names a vertex twice,
     /// an index out of range, a position that is not finite, one of a face's beyond 1e300, a tag that names no edge, vertex or face of the mesh, and what
     /// the scheme knows nothing of.
     pub fn build(self) -> Result<ControlMesh> {

@@ -52,6 +52,7 @@ mod flat;
 mod options;
 mod origin;
 mod outline;
+mod pass;
 mod patches;
 mod phong;
 mod pn;
@@ -67,10 +68,6 @@ mod triangles;
 mod unit;
 mod vertices;
 
-use glam::Vec2;
-use rayon::prelude::*;
-
-use crate::abi;
 use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
 use crate::plan::Database;
@@ -81,6 +78,7 @@ pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
+pub use pass::{Pass, Twin, is_on_hexagon};
 pub use points::Points;
 pub use ptex::{from_ptex, to_ptex};
 pub use quadtree::PlanStatistics;
@@ -344,43 +342,6 @@ pub struct Prepared {
     origin: Origin,
 }
 
-/// Patches that are drawn with one set of shaders.
-#[derive(Clone, Debug)]
-pub struct Pass {
-    /// The file in `glsl/method` that evaluates them.
-    pub shader: &'static str,
-    /// The shape of all of them.
-    pub domain: Domain,
-    /// The file that evaluates them where their control points are cached; None where they need no ring.
-    pub cached: Option<&'static str>,
-    /// Control points a patch, 1..=32, that go through the vertex shader; 1 where they are cached.
-    pub control_points: u32,
-    /// The patches.
-    pub patches: Vec<abi::Patch>,
-    /// The numbers of control vertices that the patches point into.
-    pub controls: Vec<u32>,
-    /// The side of the [`Outline`] to which each patch's edge from corner i to corner i + 1 belongs; a triangle's last one twice. Filled in by
-    /// [`Method::prepare`].
-    pub sides: Vec<[u32; 4]>,
-    /// Texture coordinates of each patch's four corners.
-    pub texture: Vec<[[f32; 2]; 4]>,
-    /// The method's own tables, `TABLES` at most.
-    pub tables: Vec<Table>,
-    /// The points that a patch needs in the scratch ring at levels 0..=10, by its plan; empty when there is no ring.
-    pub scratch_points: Vec<[u32; abi::HIGHEST_LEVEL as usize + 1]>,
-    /// The products of a weight and a vertex that these take.
-    pub scratch_products: Vec<[u64; abi::HIGHEST_LEVEL as usize + 1]>,
-    /// The deepest level that is evaluated exactly; tess factors stay at or below 2 to this.
-    pub max_level: u32,
-    /// What the evaluation shader computes, on the CPU.
-    pub twin: Twin,
-    /// Of how many control vertices and points it was made. Filled in by [`Method::prepare`].
-    needs: [usize; 2],
-}
-
-/// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices and points, patch, and where in its domain.
-pub type Twin = fn(&Pass, &Controls, usize, Vec2) -> SurfacePoint;
-
 impl Prepared {
     /// Passes alone; those without patches are left out.
     fn of(passes: impl IntoIterator<Item = Pass>) -> Prepared {
@@ -420,92 +381,4 @@ impl Prepared {
         };
         Controls { vertices, points }
     }
-}
-
-impl Pass {
-    /// A pass without patches.
-    fn new(shader: &'static str, domain: Domain, control_points: u32, twin: Twin) -> Pass {
-        Pass {
-            shader,
-            domain,
-            cached: None,
-            control_points,
-            patches: Vec::new(),
-            controls: Vec::new(),
-            sides: Vec::new(),
-            texture: Vec::new(),
-            tables: Vec::new(),
-            scratch_points: Vec::new(),
-            scratch_products: Vec::new(),
-            max_level: abi::HIGHEST_LEVEL,
-            twin,
-            needs: [0; 2],
-        }
-    }
-
-    /// Evaluates patch `patch` at `uv` of its own domain; what lies outside of that is moved to its edge. Where there is no such patch, (u, v) is
-    /// no number, or the controls are of another number of vertices or points, there is no surface: position and normal are zero.
-    pub fn evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-        let given = [controls.vertices.len(), controls.points.len()];
-        if patch >= self.patches.len() || uv.is_nan() || given != self.needs {
-            return SurfacePoint::default();
-        }
-        (self.twin)(
-            self,
-            controls,
-            patch,
-            self.domain.nearest(uv.to_array()).into(),
-        )
-    }
-
-    /// The same at many places, each a patch and (u, v), in parallel in rayon's current pool.
-    pub fn evaluate_all(&self, controls: &Controls, places: &[(u32, Vec2)]) -> Vec<SurfacePoint> {
-        let places = places.par_iter().with_min_len(256);
-        let evaluate = |&(patch, uv): &(u32, Vec2)| self.evaluate(controls, patch as usize, uv);
-        places.map(evaluate).collect()
-    }
-
-    /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in
-    /// `glsl/lib/vertex.glsl`. Zero where there is no such patch.
-    pub fn texture_coordinates(&self, patch: usize, uv: [f32; 2]) -> [f32; 2] {
-        let corners = self.texture.get(patch).copied().unwrap_or_default();
-        let [a, b, c, d] = corners.map(Vec2::from);
-        let [u, v] = uv;
-        match self.domain {
-            Domain::Quads => a.lerp(b, u).lerp(d.lerp(c, u), v),
-            Domain::Triangles => (1.0 - u - v) * a + u * b + v * c,
-        }
-        .to_array()
-    }
-
-    /// Whether a point of a patch's domain is a corner of the finest grid that the pass has tables for; see [`Reproduces::LimitOnLattice`].
-    pub fn is_on_lattice(&self, uv: [f32; 2]) -> bool {
-        let segments = (1u32 << self.max_level.saturating_sub(1).min(31)) as f32;
-        uv.iter().all(|x| (x * segments).fract() == 0.0)
-    }
-
-    /// The points that patch `patch` needs in the ring at `level`, from 10 on as at 10; none where there is no such patch.
-    pub fn points(&self, patch: usize, level: u32) -> u32 {
-        let points = self.by_plan(&self.scratch_points, patch);
-        points.map_or(0, |points| points[level.min(abi::HIGHEST_LEVEL) as usize])
-    }
-
-    /// The products of a weight and a vertex that these points take.
-    pub fn products(&self, patch: usize, level: u32) -> u64 {
-        let products = self.by_plan(&self.scratch_products, patch);
-        products.map_or(0, |products| {
-            products[level.min(abi::HIGHEST_LEVEL) as usize]
-        })
-    }
-
-    /// What a list has for a patch's plan.
-    fn by_plan<'a, T>(&self, list: &'a [T], patch: usize) -> Option<&'a T> {
-        let plan = self.patches.get(patch)?.plan;
-        list.get(plan as usize)
-    }
-}
-
-/// Whether a point of a triangle is a corner or the middle of an edge; see [`Reproduces::LimitOnHexagon`].
-pub fn is_on_hexagon(uv: [f32; 2]) -> bool {
-    uv.iter().all(|x| (2.0 * x).fract() == 0.0)
 }

@@ -173,10 +173,7 @@ mod tests {
         for orthographic in [false, true] {
             viewer.orbit.orthographic = orthographic;
             let parsed = Arguments::try_parse_from(["hullform", "devices"]);
-            let global = parsed
-                .map(|parsed| parsed.global)
-                .ok()
-                .expect("it is taken");
+            let global = parsed.map(|parsed| parsed.global).expect("it is taken");
             let shape = Shape {
                 scheme: None,
                 triangulate: Triangulate::Fan,

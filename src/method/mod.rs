@@ -55,6 +55,7 @@ mod outline;
 mod pass;
 mod patches;
 mod phong;
+mod placed;
 mod pn;
 mod points;
 mod ptex;

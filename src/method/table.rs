@@ -4,15 +4,12 @@ use std::ops::{Deref, DerefMut};
 
 use bytemuck::NoUninit;
 
-use crate::abi;
-use crate::method::Pass;
-
 /// A table of a method's own: its elements' words.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     words: Vec<u32>,
     /// Words an element.
-    stride: usize,
+    pub(super) stride: usize,
 }
 
 impl Table {
@@ -36,71 +33,5 @@ impl Deref for Table {
 impl DerefMut for Table {
     fn deref_mut(&mut self) -> &mut [u32] {
         &mut self.words
-    }
-}
-
-/// Where a table begins in the buffer of its pass, in elements of its own, and its words.
-struct Placed<'a> {
-    base: usize,
-    stride: usize,
-    words: &'a [u32],
-}
-
-impl Placed<'_> {
-    /// Where it begins and where it ends, in words.
-    fn range(&self) -> std::ops::Range<usize> {
-        let start = self.base * self.stride;
-        start..start + self.words.len()
-    }
-}
-
-impl Pass {
-    /// Patches, numbers of control vertices, texture coordinates, the method's own tables, and others: each begins at a multiple of its elements' size.
-    fn placed<'a>(&'a self, others: &'a [Table]) -> Vec<Placed<'a>> {
-        let shared = [
-            (size_of::<abi::Patch>(), bytemuck::cast_slice(&self.patches)),
-            (size_of::<u32>(), &self.controls[..]),
-            (size_of::<[f32; 2]>(), bytemuck::cast_slice(&self.texture)),
-        ];
-        let shared = shared.map(|(bytes, words)| (bytes / 4, words));
-        let tables = self.tables.iter().chain(others);
-        let own = tables.map(|table| (table.stride, &table[..]));
-        let mut end = 0usize;
-        let all = shared.into_iter().chain(own).map(|(stride, words)| {
-            let base = end.div_ceil(stride.max(1));
-            let placed = Placed {
-                base,
-                stride,
-                words,
-            };
-            end = placed.range().end;
-            placed
-        });
-        all.collect()
-    }
-
-    /// The bytes that its tables take on a device, all in one buffer.
-    pub fn table_bytes(&self) -> u64 {
-        Self::bytes(&self.placed(&[]))
-    }
-
-    fn bytes(placed: &[Placed<'_>]) -> u64 {
-        placed.last().map_or(0, |last| 4 * last.range().end as u64)
-    }
-
-    /// The words of that buffer, with other tables behind the method's own, and where its tables begin there.
-    pub fn packed(&self, others: &[Table]) -> (Vec<u32>, abi::Bases) {
-        let placed = self.placed(others);
-        let mut words = vec![0; Self::bytes(&placed) as usize / 4];
-        for table in &placed {
-            words[table.range()].copy_from_slice(table.words);
-        }
-        let base = |number: usize| placed.get(number).map_or(0, |table| table.base as u32);
-        let bases = abi::Bases {
-            controls: base(1),
-            texture: base(2),
-            own: std::array::from_fn(|own| base(3 + own)),
-        };
-        (words, bases)
     }
 }

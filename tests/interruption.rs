@@ -140,7 +140,7 @@ fn verify_keeps_what_it_found() {
         "--junit",
         "results.xml",
     ];
-    for patience in [2, 8, 30] {
+    for patience in [2, 4, 8, 12, 16, 24] {
         let folder = tempfile::tempdir().expect("a folder");
         let child = start(folder.path(), &arguments);
         sleep(Duration::from_secs(patience));

@@ -130,6 +130,12 @@ const uint STENCIL_OWN = 0u;
 const uint STENCIL_SHIFT = 28u;
 // In the second word of a stencil, above the place of the pattern: binary logarithm of the bits of a number, less 2.
 const uint WIDTH_SHIFT = 30u;
+// Such a width of stencils that have no pattern: there is a weight for each vertex of the ring. Those of vertices, and of tangents near corners.
+const uint DENSE = 3u;
+// Lists of places in a patch's ring have so many bits a place, as many places as a word holds, the first lowest. In rings of up to 32 vertices.
+const uint PLACE_BITS = 5u;
+// The same in longer rings.
+const uint LONG_PLACE_BITS = 16u;
 // In the first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
 const uint STENCIL_CORNER = 5u;
 // Points in a level of a terminal node: sixteen for each of its children x + 2 y.
@@ -233,7 +239,7 @@ struct Patch {
 struct Border {
     // These.
     uint uses[9];
-    // Where it stands which vertices of the 1-ring are evaluated themselves.
+    // Where the places of those vertices of the 1-ring stand that are evaluated themselves.
     uint plain;
     // How many these are.
     uint plain_count;
@@ -251,8 +257,8 @@ struct Use {
     // The node that walks begin with. Of a corner with a plan, the number, among the stencils of the inside, of the first of two tangents near it;
     // or `NO_TANGENTS`.
     uint root;
-    // Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
-    // inside, whose ring is the patch's.
+    // Where in the list of control vertices the places of the plan's ring in the patch's stand, the corner's first. Of the inside, whose ring is the patch's, they
+    // stand behind that, in the order in which stencils are summed.
     uint ring;
     // `USE_...` flags.
     uint flags;

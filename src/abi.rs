@@ -246,6 +246,12 @@ constants! {
     STENCIL_SHIFT = 28;
     /// In the second word of a stencil, above the place of the pattern: binary logarithm of the bits of a number, less 2.
     WIDTH_SHIFT = 30;
+    /// Such a width of stencils that have no pattern: there is a weight for each vertex of the ring. Those of vertices, and of tangents near corners.
+    DENSE = 3;
+    /// Lists of places in a patch's ring have so many bits a place, as many places as a word holds, the first lowest. In rings of up to 32 vertices.
+    PLACE_BITS = 5;
+    /// The same in longer rings.
+    LONG_PLACE_BITS = 16;
     /// In the first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
     STENCIL_CORNER = 5;
     /// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
@@ -359,7 +365,7 @@ structs! {
     Border {
         /// These.
         uses: [u32; 9],
-        /// Where it stands which vertices of the 1-ring are evaluated themselves.
+        /// Where the places of those vertices of the 1-ring stand that are evaluated themselves.
         plain: u32,
         /// How many these are.
         plain_count: u32,
@@ -377,8 +383,8 @@ structs! {
         /// The node that walks begin with. Of a corner with a plan, the number, among the stencils of the inside, of the first of two tangents near it;
         /// or `NO_TANGENTS`.
         root: u32,
-        /// Where in the list of control vertices it stands which vertices of the patch's 1-ring a plan's ring has, the corner's first; not for the
-        /// inside, whose ring is the patch's.
+        /// Where in the list of control vertices the places of the plan's ring in the patch's stand, the corner's first. Of the inside, whose ring is the patch's, they
+        /// stand behind that, in the order in which stencils are summed.
         ring: u32,
         /// `USE_...` flags.
         flags: u32,

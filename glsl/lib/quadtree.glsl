@@ -26,19 +26,54 @@ struct StencilRow {
     uint pattern;
     uint width;
     uint mask;
+#ifndef LONG_RINGS
+    // The words of the pattern, each for four to eight terms of a sum: so a term fetches nothing but its weight.
+    uvec4 first_words;
+    uvec4 last_words;
+#endif
 };
 
-StencilRow stencil_row(uint number) {
+// That of a ring of `size` vertices.
+StencilRow stencil_row(uint number, uint size) {
     uvec2 row = stencils[bases.own[2] + number];
-    uint set = bases.own[3] + (row.x & ((1u << STENCIL_SHIFT) - 1u));
-    uint width = min(row.y >> WIDTH_SHIFT, 2u);
-    return StencilRow(row.x >> STENCIL_SHIFT, set, row.y & ((1u << WIDTH_SHIFT) - 1u), width, (1u << (4u << width)) - 1u);
+    StencilRow found;
+    found.corner = row.x >> STENCIL_SHIFT;
+    found.set = bases.own[3] + (row.x & ((1u << STENCIL_SHIFT) - 1u));
+    found.pattern = row.y & ((1u << WIDTH_SHIFT) - 1u);
+    found.width = min(row.y >> WIDTH_SHIFT, 2u);
+    found.mask = (1u << (4u << found.width)) - 1u;
+#ifndef LONG_RINGS
+    uint word = bases.own[4] + (found.pattern >> 3u);
+    found.pattern &= 7u;
+    found.first_words = uvec4(0u);
+    found.last_words = uvec4(0u);
+    // Most have four at most. Behind the last there are other tables.
+    found.first_words = uvec4(patterns[word], patterns[word + 1u], patterns[word + 2u], patterns[word + 3u]);
+    if (found.pattern + (size << found.width) > 32u) {
+        found.last_words = uvec4(patterns[word + 4u], patterns[word + 5u], patterns[word + 6u], patterns[word + 7u]);
+    }
+#endif
+    return found;
 }
 
-// The weight of a vertex of the ring.
+// The word of its pattern in which four bits stand.
+uint pattern_word(StencilRow row, uint at) {
+#ifdef LONG_RINGS
+    return patterns[bases.own[4] + (at >> 3u)];
+#else
+    uvec4 four = (at & 32u) != 0u ? row.last_words : row.first_words;
+    uvec2 two = (at & 16u) != 0u ? four.zw : four.xy;
+    return (at & 8u) != 0u ? two.y : two.x;
+#endif
+}
+
+// Where the weights of a dense row begin.
+uint dense_row(uint number) { return bases.own[3] + (stencils[bases.own[2] + number].x & ((1u << STENCIL_SHIFT) - 1u)); }
+
+// The weight of a vertex of the ring, in a row that is not dense.
 float weight_at(StencilRow row, uint place) {
     uint at = row.pattern + (place << row.width);
-    return weights[row.set + (patterns[bases.own[4] + (at >> 3u)] >> (4u * (at & 7u)) & row.mask)];
+    return weights[row.set + (pattern_word(row, at) >> (4u * (at & 7u)) & row.mask)];
 }
 
 // The row of points that begins at `number` in the nodes' lists: two 16-bit halves a word, the lower first.
@@ -90,7 +125,8 @@ Leaf find_leaf(uint root, vec2 from) {
     uint points = nodes[number].points;
     precise float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
-    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL; ++depth) {
+    uint depth = 0u;
+    if ((kind_word & 15u) == NODE_INTERNAL) do {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);
@@ -98,7 +134,7 @@ Leaf find_leaf(uint root, vec2 from) {
         number = bases.own[0] + points + uint(half_plane.x) + 2u * uint(half_plane.y);
         kind_word = nodes[number].kind;
         points = nodes[number].points;
-    }
+    } while (++depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL);
     uint kind = kind_word & 15u;
     uint place = kind_word >> 4u & 15u;
     uint base = kind_word >> NODE_BASE_SHIFT & 15u;

@@ -49,6 +49,22 @@ uint use_of_corner(Patch record, uint corner) {
 }
 
 #if defined(STAGE_COMPUTE) || (defined(STAGE_CONTROL) && !defined(CACHED_POINTS))
+// Lists of places in the patch's ring.
+#ifdef LONG_RINGS
+const uint BITS_A_PLACE = LONG_PLACE_BITS;
+#else
+const uint BITS_A_PLACE = PLACE_BITS;
+#endif
+const uint PLACES_A_WORD = 32u / BITS_A_PLACE;
+
+// The first place of a word of them.
+uint first_place(uint word) { return word & ((1u << BITS_A_PLACE) - 1u); }
+
+// Place `i` of the list that begins at `list`.
+uint place_at(uint list, uint i) {
+    return first_place(control_at(list + i / PLACES_A_WORD) >> BITS_A_PLACE * (i % PLACES_A_WORD));
+}
+
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
 #ifdef STAGE_COMPUTE
@@ -72,7 +88,24 @@ void add_compensated(inout vec3 sum, inout vec3 lost, vec3 term) {
     lost = more;
 }
 
-// The ring of a use: how many vertices it has, where their numbers in the patch's ring stand, and its first stencil.
+// Adds `term` to a sum of `count` terms.
+void add_term(inout vec3 sum, inout vec3 lost, vec3 term, uint count) {
+#ifdef LONG_RINGS
+    if (count > CONTROL_INVOCATIONS) {
+        add_compensated(sum, lost, term);
+    } else {
+        precise vec3 next = sum + term;
+        sum = next;
+    }
+#else
+    precise vec3 next = sum + term;
+    sum = next;
+#endif
+}
+
+// The ring of a use: how many vertices it has, where the list of their places in the patch's ring begins, and its first stencil. Of the inside, whose ring is
+// the patch's, the list is the order in which stencils are summed, that of the vertices' numbers in the mesh: so faces that share a point give it the
+// same bits.
 struct Ring {
     uint size;
     uint places;
@@ -89,24 +122,16 @@ Ring use_ring(Patch record, uint number, uint stencils) {
     uint size = uses[used].size;
     precise float needed = float(size) * float(stencils);
     precise float most = float(PRODUCTS_A_WORD) * float(weights.length());
-    return Ring(needed <= most ? size : 0u, uses[used].ring, uses[used].rows, number == 0u);
-}
-
-// Vertex i of it.
-vec3 ring_vertex(Patch record, Ring ring, uint i) { return ring_point(record, ring.inside ? i : control_at(ring.places + i)); }
-
-// Places i, which is even, and i + 1 in the order in which stencils of the inside are summed, the first in the lower half. It is that of the vertices' numbers in the mesh:
-// so faces that share a point give it the same bits.
-uint summed_places(Patch record, Ring ring, uint i) {
-    return ring.inside ? control_at(record.controls + ring.size + (i >> 1u)) : i | (i + 1u) << 16u;
+    uint places = number == 0u ? record.controls + size : uses[used].ring;
+    return Ring(needed <= most ? size : 0u, places, uses[used].rows, number == 0u);
 }
 
 // Where the vertex stands in the patch's ring that a stencil is relative to. A quad's corners come first there, in the plan's order.
 uint origin_place(Patch record, Ring ring, uint corner) {
-    if (!ring.inside) return control_at(ring.places);
+    if (!ring.inside) return place_at(ring.places, 0u);
     if (corner == STENCIL_OWN) return 0u;
     if ((record.flags & PATCH_HALF) == 0u) return corner - STENCIL_CORNER;
-    return control_at(uses[use_of(record, use_of_corner(record, corner))].ring);
+    return place_at(uses[use_of(record, use_of_corner(record, corner))].ring, 0u);
 }
 
 // A stencil's sum over a ring, relative to a vertex near it: so it errs by what the ring's own size has for rounding.
@@ -114,88 +139,96 @@ uint origin_place(Patch record, Ring ring, uint corner) {
 // Rings too long for the vertex shader are also too long for a plain sum: where hundreds of faces meet, the tangents of neighbours differ by
 // less than it would lose.
 vec3 stencil_point(Patch record, Ring ring, uint number) {
-    StencilRow row = stencil_row(ring.rows + number);
+    StencilRow row = stencil_row(ring.rows + number, ring.size);
     vec3 origin = ring_point(record, origin_place(record, ring, row.corner));
     precise vec3 sum = vec3(0.0);
-#ifdef LONG_RINGS
     vec3 lost = vec3(0.0);
-    for (uint i = 0u; i < ring.size; ++i) {
-        uint pair = summed_places(record, ring, i & ~1u);
-        uint at = (i & 1u) != 0u ? pair >> 16u : pair & 0xffffu;
-        precise vec3 term = weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
-        precise vec3 next = sum + term;
-        if (ring.size > CONTROL_INVOCATIONS) {
-            add_compensated(sum, lost, term);
-        } else {
-            sum = next;
-        }
-    }
-#else
+    // Two terms at a time, whose places are in one word.
     for (uint i = 0u; i < ring.size; i += 2u) {
-        uint pair = summed_places(record, ring, i);
-        uint at = pair & 0xffffu;
-        sum += weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
+        uint places = control_at(ring.places + i / PLACES_A_WORD) >> BITS_A_PLACE * (i % PLACES_A_WORD);
+        uint place = first_place(places);
+        precise vec3 term = weight_at(row, ring.inside ? place : i) * (ring_point(record, place) - origin);
+        add_term(sum, lost, term, ring.size);
         if (i + 1u < ring.size) {
-            at = pair >> 16u;
-            sum += weight_at(row, at) * (ring_vertex(record, ring, at) - origin);
+            place = first_place(places >> BITS_A_PLACE);
+            term = weight_at(row, ring.inside ? place : i + 1u) * (ring_point(record, place) - origin);
+            add_term(sum, lost, term, ring.size);
         }
     }
-#endif
     return sum;
 }
 
-// The pair of tangents whose first is stencil `number`, as `stencil_point`.
-Tangents ring_tangents(Patch record, Ring ring, uint number) {
-    StencilRow first = stencil_row(ring.rows + number);
-    StencilRow second = stencil_row(ring.rows + number + 1u);
-    vec3 origin = ring_vertex(record, ring, 0u);
+// What a corner is evaluated by: the limit position, relative to the first vertex of the ring, and a pair of tangents.
+struct Limit {
+    vec3 position;
+    Tangents tangents;
+};
+
+// The sums of three dense rows over a ring.
+Limit ring_limit(Patch record, Ring ring, uvec3 numbers) {
+    uint at = dense_row(ring.rows + numbers.x);
+    uint at_u = dense_row(ring.rows + numbers.y);
+    uint at_v = dense_row(ring.rows + numbers.z);
+    vec3 origin = ring_point(record, ring.inside ? 0u : place_at(ring.places, 0u));
+    precise vec3 sum = vec3(0.0);
     vec3 du = vec3(0.0);
     vec3 dv = vec3(0.0);
+    vec3 lost = vec3(0.0);
     vec3 lost_u = vec3(0.0);
     vec3 lost_v = vec3(0.0);
     precise vec2 spread = vec2(0.0);
     precise vec2 total = vec2(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
-        precise vec3 spoke = ring_vertex(record, ring, i) - origin;
-        vec2 pair = vec2(weight_at(first, i), weight_at(second, i));
+        precise vec3 spoke = ring_point(record, ring.inside ? i : place_at(ring.places, i)) - origin;
+        vec2 pair = vec2(weights[at_u + i], weights[at_v + i]);
         precise vec3 along_u = pair.x * spoke;
         precise vec3 along_v = pair.y * spoke;
         add_compensated(du, lost_u, along_u);
         add_compensated(dv, lost_v, along_v);
         spread += abs(pair) * reach(spoke);
         total += abs(pair);
+        precise vec3 term = weights[at + i] * spoke;
+        add_term(sum, lost, term, ring.size);
     }
-    return Tangents(du, dv, rounding_errors(spread, total, origin));
+    return Limit(sum, Tangents(du, dv, rounding_errors(spread, total, origin)));
 }
 
-// The normal at the patch's corner that is use `number`. It depends on nothing but what all who share it have; at cusps, and between two sharp edges
-// of a single face, on the face.
+// The limit position, relative to the first vertex of the corner's ring, and the normal at the patch's corner that is use `number`. They depend on nothing but
+// what all who share the corner have; at cusps, and between two sharp edges of a single face, the normal depends on the face.
 //
 // There are two pairs of tangents at most, the limit's and those that may stand in for it; the loop makes them one piece of code.
-vec3 vertex_normal(Patch record, uint number) {
+Point corner_point(Patch record, uint number) {
     uint flags = uses[use_of(record, number)].flags;
     uint near_pair = uses[use_of(record, number)].root;
     bool has_near = near_pair != NO_TANGENTS;
+    bool is_cusp = (flags & USE_CUSP) != 0u;
     uint limit_pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
-    Tangents limit;
+    uint pairs = has_near || (flags & USE_SPARE) != 0u ? 2u : 1u;
+    Limit limit;
     vec3 limit_normal = vec3(0.0);
     vec3 normal = vec3(0.0);
-    for (uint i = 0u; i < 2u; ++i) {
-        Ring ring = use_ring(record, i == 1u && has_near ? 0u : number, 2u);
-        bool wanted = i == 0u ? (flags & USE_CUSP) == 0u : has_near || (flags & USE_SPARE) != 0u;
-        ring.size = wanted ? ring.size : 0u;
-        Tangents tangents = ring_tangents(record, ring, i == 0u ? limit_pair : has_near ? near_pair : limit_pair + 2u);
-        normal = clear_normal(tangents);
+    for (uint i = 0u; i < pairs; ++i) {
+        Ring ring = use_ring(record, i == 1u && has_near ? 0u : number, 3u);
+        uint pair = i == 0u ? limit_pair : has_near ? near_pair : limit_pair + 2u;
+        // At a cusp there is no limit's pair.
+        uvec3 rows = i == 0u ? is_cusp ? uvec3(0u) : uvec3(0u, pair, pair + 1u) : uvec3(pair, pair, pair + 1u);
+        Limit sums = ring_limit(record, ring, rows);
+        normal = clear_normal(sums.tangents);
         // The plan's tangents go the other way round there.
         if (i == 1u && has_near && is_mirrored(record)) normal = -normal;
         if (i == 0u) {
-            limit = tangents;
+            limit = sums;
             limit_normal = normal;
         }
     }
-    if ((flags & USE_CUSP) != 0u) return normal;
-    if (has_near) return normal_of_single(limit, limit_normal, normal);
-    return limit_normal == vec3(0.0) ? normal : limit_normal;
+    if (!is_cusp) {
+        if (has_near) {
+            normal = normal_of_single(limit.tangents, limit_normal, normal);
+        } else if (limit_normal != vec3(0.0)) {
+            normal = limit_normal;
+        }
+    }
+    return Point(limit.position, normal);
 }
 
 #ifdef STAGE_CONTROL
@@ -228,10 +261,10 @@ struct Part {
     uint end;
 };
 
-// The part that point `next` is in; none of the inside.
+// The part, of the inside or an edge, that point `next` is in.
 Part find_part(Parts parts, uint next) {
-    Part part = Part(1u, parts.ends[0], parts.ends[1]);
-    for (uint i = 2u; i < USES; ++i) {
+    Part part = Part(0u, parts.plain_end, parts.ends[0]);
+    for (uint i = 1u; i < 5u; ++i) {
         bool beyond = next >= parts.ends[i - 1u];
         part.number = beyond ? i : part.number;
         part.start = beyond ? parts.ends[i - 1u] : part.start;
@@ -245,38 +278,42 @@ vec4 use_head(Patch record, Parts parts, uint number) {
     uint used = use_of(record, number);
     bool planned = uses[used].size > 0u;
     bool inside = (uses[used].flags & USE_INSIDE) != 0u;
-    uint first = number == 0u ? 0u : control_at(uses[used].ring);
+    uint first = number == 0u ? 0u : place_at(uses[used].ring, 0u);
     uint start = parts.plain_end;
     for (uint i = 1u; i < USES; ++i) start = number == i && !inside ? parts.ends[i - 1u] : start;
     vec3 origin = planned || number >= STENCIL_CORNER ? ring_point(record, first) : vec3(0.0);
     return vec4(origin, float(planned || inside ? start : USES));
 }
 
-// Fills the slot, stretch by stretch: every 32nd point is this invocation's. What differs is in loops of its own, since machines that run
-// invocations abreast go through all code that one of them needs. Of edges and corners each invocation finds the part that its own point is in:
-// these are short, and if all went through them together most would wait most of the time.
+// Fills the slot: every 32nd point is this invocation's. Those of the inside and of edges are one stretch, so that few invocations have nothing to do; corners,
+// where tangents are summed and normals decided, are another.
+//
+// Machines that run invocations abreast go through all code that one of them needs, and through the body of a loop once more to find out at its
+// beginning that they are done: therefore these loops are tested at their ends. Those that compute something must not be: what an invocation has
+// computed when it leaves such a loop before others do is overwritten by theirs (seen on llvmpipe, Mesa 22.3.6).
 void run_stencils(Patch record, uint slot, uint level, uint count) {
     Parts parts = find_parts(record, level);
     if (gl_InvocationID < USES && count > 0u) scratch[slot + gl_InvocationID] = use_head(record, parts, gl_InvocationID);
-    uint plain = borders[border_of(record)].plain - USES;
-    for (uint next = USES + gl_InvocationID; next < min(parts.plain_end, count); next += CONTROL_INVOCATIONS) {
-        scratch[slot + next].xyz = ring_point(record, control_at(plain + next));
-    }
-    Ring inside = use_ring(record, 0u, min(parts.ends[0] - parts.plain_end, count));
-    for (uint next = parts.plain_end + gl_InvocationID; next < min(parts.ends[0], count); next += CONTROL_INVOCATIONS) {
-        scratch[slot + next].xyz = stencil_point(record, inside, next - parts.plain_end);
-    }
-    for (uint next = parts.ends[0] + gl_InvocationID; next < count; next += CONTROL_INVOCATIONS) {
+    uint next = USES + gl_InvocationID;
+    uint end = min(parts.plain_end, count);
+    if (next < end) do {
+        scratch[slot + next].xyz = ring_point(record, place_at(borders[border_of(record)].plain, next - USES));
+        next += CONTROL_INVOCATIONS;
+    } while (next < end);
+    next = parts.plain_end + gl_InvocationID;
+    end = min(parts.ends[4], count);
+    if (next < end) do {
         Part part = find_part(parts, next);
         Ring ring = use_ring(record, part.number, min(part.end - part.start, count));
-        bool is_normal = part.number >= 5u && next > part.start;
-        if (is_normal) ring.size = 0u;
-        vec3 point = stencil_point(record, ring, next - part.start);
-        if (!is_normal) scratch[slot + next].xyz = point;
-    }
-    for (uint number = 5u + gl_InvocationID; number < (count > 0u ? USES : 0u); number += CONTROL_INVOCATIONS) {
-        uint place = parts.ends[number - 1u] + 1u;
-        if (place < min(parts.ends[number], count)) scratch[slot + place].xyz = vertex_normal(record, number);
+        scratch[slot + next].xyz = stencil_point(record, ring, next - part.start);
+        next += CONTROL_INVOCATIONS;
+    } while (next < end);
+    uint number = min(5u + gl_InvocationID, USES - 1u);
+    uint place = parts.ends[number - 1u];
+    if (5u + gl_InvocationID < USES && place + 1u < min(parts.ends[number], count)) {
+        Point point = corner_point(record, number);
+        scratch[slot + place].xyz = point.position;
+        scratch[slot + place + 1u].xyz = point.normal;
     }
 }
 #else
@@ -287,7 +324,10 @@ vec3 job_point(uvec2 job) {
     uint number = min(job.y >> JOB_USE_SHIFT & 15u, USES - 1u);
     uint row = job.y & 0xffffu;
     if (kind == JOB_VERTEX) return ring_point(record, row);
-    if (kind == JOB_NORMAL) return vertex_normal(record, number);
+    if (kind == JOB_LIMIT || kind == JOB_NORMAL) {
+        Point corner = corner_point(record, number);
+        return kind == JOB_LIMIT ? corner.position : corner.normal;
+    }
     return stencil_point(record, use_ring(record, number, row + 1u), row);
 }
 #endif

@@ -7,6 +7,7 @@ mod bounded;
 mod cached;
 mod corner;
 mod irregular;
+mod places;
 mod plain;
 mod subjects;
 mod twin;
@@ -184,7 +185,8 @@ fn irregular(
         if patch.ring.mirrored {
             record.flags |= abi::PATCH_MIRRORED;
         }
-        pass.controls.extend(patch.order_words());
+        let order: Vec<u32> = patch.order.iter().map(|&place| place.into()).collect();
+        pass.controls.extend(places::pack(order.len(), &order));
     }
     let (records, uses) = with_places(&mut pass, &borders);
     let sums = records

@@ -4,6 +4,8 @@
 //! vertices differently; and level by level other weights stand in the same places. So a row is two numbers: of the *set* of its different weights, in
 //! ascending order, and of the *pattern* that tells for each vertex of the ring which of these it has. Of Armor Guy's 266,000 rows there are 58,000 sets and
 //! 88,000 patterns; whole rows differ in half of all cases, and lists of what is not zero would take twice the memory.
+//!
+//! Few rows are of vertices, or of tangents, and they are summed for every patch whatever its level: these are *dense*, without a pattern to be fetched first.
 
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
@@ -27,6 +29,7 @@ pub struct PackedRows {
     units: u32,
     known_sets: FxHashMap<Box<[u32]>, u32>,
     known_patterns: FxHashMap<Box<[u16]>, u32>,
+    known_dense: FxHashMap<Box<[u32]>, u32>,
 }
 
 /// Packed rows, borrowed.
@@ -49,7 +52,7 @@ pub struct Row<'a> {
     patterns: &'a [u32],
     /// Where its pattern begins, in units of four bits.
     first: u32,
-    /// Which of the widths.
+    /// Which of the widths, or [`abi::DENSE`].
     width: u32,
 }
 
@@ -61,6 +64,16 @@ fn ascending(weight: f32) -> u32 {
     } else {
         bits | 1 << 31
     }
+}
+
+/// # Errors
+/// [`Misuse::PlanTooLarge`] where there are more weights than words can count.
+fn check(points: usize) -> Result<()> {
+    let greatest = 1 << abi::STENCIL_SHIFT;
+    if points < greatest {
+        return Ok(());
+    }
+    Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }))
 }
 
 fn weight_of(key: u32) -> f32 {
@@ -99,13 +112,37 @@ impl PackedRows {
             17..=256 => 1,
             _ => 2,
         };
-        let (points, greatest) = (self.sets.len() + set.len(), 1 << abi::STENCIL_SHIFT);
-        if points > greatest || self.units as usize + 4 * pattern.len() >= 1 << abi::WIDTH_SHIFT {
-            return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
-        }
+        check(self.sets.len() + set.len())?;
+        check(
+            (self.units as usize + 4 * pattern.len()) >> (abi::WIDTH_SHIFT - abi::STENCIL_SHIFT),
+        )?;
         let row = [
             self.set(&set) | corner << abi::STENCIL_SHIFT,
             self.pattern(&pattern, width) | width << abi::WIDTH_SHIFT,
+        ];
+        self.rows.push(row);
+        Ok(())
+    }
+
+    /// Appends a row that has a weight for each vertex of the ring, and is relative to its first.
+    ///
+    /// # Errors
+    /// As for [`PackedRows::push`].
+    pub(super) fn push_dense(&mut self, weights: &[f64]) -> Result<()> {
+        let bits = weights
+            .iter()
+            .map(|&weight| (weight as f32 + 0.0).to_bits());
+        let bits: SmallVec<[u32; 32]> = bits.collect();
+        check(self.sets.len() + bits.len())?;
+        let first = self.sets.len() as u32;
+        let known = self.known_dense.entry(bits[..].into());
+        let first = *known.or_insert(first);
+        if first as usize == self.sets.len() {
+            self.sets.extend(bits.into_iter().map(f32::from_bits));
+        }
+        let row = [
+            first | abi::STENCIL_OWN << abi::STENCIL_SHIFT,
+            abi::DENSE << abi::WIDTH_SHIFT,
         ];
         self.rows.push(row);
         Ok(())
@@ -128,7 +165,11 @@ impl PackedRows {
             return known;
         }
         let units = WIDTHS[width as usize] / 4;
-        let first = self.units.next_multiple_of(units);
+        // The wider ones begin with a word: so those of a ring of 32 vertices are in eight words, which shaders keep at hand.
+        let first = match width {
+            0 => self.units,
+            _ => self.units.next_multiple_of(8),
+        };
         self.units = first + units * numbers.len() as u32;
         self.patterns.resize(self.units.div_ceil(8) as usize, 0);
         for (at, &number) in (first..).step_by(units as usize).zip(numbers) {
@@ -187,6 +228,9 @@ impl<'a> RowsView<'a> {
 impl Row<'_> {
     /// The weight of a vertex of the ring; 0 beyond the tables' ends. Twin of `weight_at` in `glsl/lib/quadtree.glsl`.
     pub fn weight(&self, place: usize) -> f32 {
+        if self.width == abi::DENSE {
+            return self.set.get(place).copied().unwrap_or_default();
+        }
         let at = self.first as usize + (place << self.width);
         let bits = 4u32 << self.width;
         let word = self.patterns.get(at / 8).copied().unwrap_or_default();

@@ -83,14 +83,19 @@ impl PackedPlans {
             let packed = self.pack(node, plan, root);
             self.nodes.push(packed);
         }
-        let tangents = plan.nearby.iter().flatten().flatten();
-        let rows = plan
-            .stencils
-            .iter()
-            .map(|stencil| (&stencil.weights, stencil.corner));
-        for (row, corner) in rows.chain(tangents.map(|row| (row, None))) {
+        // A plan without nodes is a vertex's: its limit, and tangents.
+        let is_vertex = plan.nodes.is_empty();
+        for stencil in &plan.stencils {
+            let corner = stencil.corner;
             let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
-            self.rows.push(row, corner)?;
+            if is_vertex {
+                self.rows.push_dense(&stencil.weights)?;
+            } else {
+                self.rows.push(&stencil.weights, corner)?;
+            }
+        }
+        for tangent in plan.nearby.iter().flatten().flatten() {
+            self.rows.push_dense(tangent)?;
         }
         let mut next = plan.stencils.len() as u32;
         self.nearby.push(plan.nearby.each_ref().map(|tangents| {

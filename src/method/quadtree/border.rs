@@ -16,6 +16,7 @@ use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
 use crate::method::quadtree::agreement::agreed_edges;
 use crate::method::quadtree::irregular::Irregular;
+use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_turned_corner, vertex_rows};
 use crate::method::quadtree::subjects::{Line, Point, Shared};
 use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side};
@@ -200,7 +201,7 @@ struct Plain<'a> {
     numbers: List,
 }
 
-/// Places in a ring.
+/// Places in a ring, or the words of such a list.
 type List = SmallVec<[u32; 32]>;
 
 impl Plain<'_> {
@@ -303,7 +304,7 @@ impl Builder<'_> {
             } else {
                 0
             };
-            uses[number].ring = self.list(smallvec![own]);
+            uses[number].ring = self.list(patch, smallvec![own]);
             let Some(point) = point else { continue };
             match self.vertices.known.get(&point) {
                 Some((ring, plan)) => {
@@ -334,7 +335,7 @@ impl Builder<'_> {
         let ends = ends(plain_count, &counts)?;
         Ok(abi::Border {
             uses: uses.map(|used| numbered(&mut self.uses, &mut self.found.uses, used)),
-            plain: self.list(places),
+            plain: self.list(patch, places),
             plain_count,
             ends: numbered(&mut self.ends, &mut self.found.ends, ends),
         })
@@ -380,15 +381,16 @@ impl Builder<'_> {
     /// Where it stands which vertices of the patch's ring a plan's ring has.
     fn places(&mut self, ring: &Ring, plain: &Plain<'_>) -> u32 {
         let places = ring.vertices.iter().map(|&vertex| plain.place(vertex));
-        self.list(places.collect())
+        self.list(plain.patch, places.collect())
     }
 
-    /// Where a list of places begins.
-    fn list(&mut self, places: List) -> u32 {
+    /// Where a list of places in the patch's ring begins.
+    fn list(&mut self, patch: &Irregular, places: List) -> u32 {
         let all = &mut self.found.places;
-        *self.lists.entry(places).or_insert_with_key(|places| {
-            all.extend_from_slice(places);
-            (all.len() - places.len()) as u32
+        let words = places::pack(patch.ring.vertices.len(), &places).collect();
+        *self.lists.entry(words).or_insert_with_key(|words: &List| {
+            all.extend_from_slice(words);
+            (all.len() - words.len()) as u32
         })
     }
 

@@ -272,19 +272,19 @@ impl<'a> Patch<'a> {
             places: Vec::new(),
         };
         let mut copies: FxHashMap<u32, u32> = FxHashMap::default();
-        let list = |start: u32| &self.pass.controls[start as usize..];
+        let own = self.of(0);
         let origins = (0..USES).map(|number| match number {
             0 => 0,
             _ if number >= 5 || self.border.used(number).size > 0 => {
-                list(self.border.used(number).ring)[0]
+                own.place(self.border.used(number).ring, 0)
             }
             _ => 0,
         });
         let abi::Border {
             plain, plain_count, ..
         } = *self.border.record;
-        let plain = list(plain)[..plain_count as usize].iter();
-        for place in origins.chain(plain.copied()) {
+        let plain = (0..plain_count as usize).map(|i| own.place(plain, i));
+        for place in origins.chain(plain) {
             let number = *copies.entry(place).or_insert_with(|| {
                 points.push(self, job(abi::JOB_VERTEX, 0, place), 0);
                 points.needed.len() as u32 - 1
@@ -361,7 +361,7 @@ impl<'a> Patch<'a> {
             abi::STENCIL_OWN => None,
             corner => {
                 let number = self.border.use_of_corner(corner) as usize;
-                Some(self.pass.controls[self.border.used(number).ring as usize])
+                Some(of.place(self.border.used(number).ring, 0))
             }
         };
         each((place.map_or(vertices[0], |place| self.vertex(place)), 0));

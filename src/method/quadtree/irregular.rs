@@ -34,15 +34,6 @@ impl Irregular {
         Some(self.order[at])
     }
 
-    /// The order as it stands behind the ring in the list of control vertices: two 16-bit halves a word, the lower first.
-    pub fn order_words(&self) -> impl Iterator<Item = u32> {
-        let pairs = self.order.chunks(2);
-        pairs.map(|pair| {
-            let second = pair.get(1).copied().unwrap_or(0);
-            u32::from(pair[0]) | u32::from(second) << 16
-        })
-    }
-
     /// The corner of the quad at which the patch begins.
     pub fn turn(&self, topology: &Topology) -> u32 {
         if topology.face(self.part.face).len() == 4 {

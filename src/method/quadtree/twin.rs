@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 
 use crate::abi;
 use crate::method::Pass;
+use crate::method::quadtree::places::place_at;
 use crate::method::quadtree::view::{self, Border};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::patch::bspline::{Basis, basis, basis_of};
@@ -238,7 +239,7 @@ impl<'a> Use<'a> {
             let place = if is_own {
                 i
             } else {
-                pass.controls[(start + i) as usize]
+                self.place(start, i as usize)
             };
             pass.controls[(controls + place) as usize]
         })
@@ -249,6 +250,12 @@ impl<'a> Use<'a> {
         self.vertices()
             .map(|vertex| positions[vertex as usize])
             .collect()
+    }
+
+    /// Place `i` of the list that begins at `start`.
+    pub(super) fn place(&self, start: u32, i: usize) -> u32 {
+        let ring = self.border.used(0).size as usize;
+        place_at(ring, &self.pass.controls[start as usize..], i)
     }
 
     /// Stencil `number` of its plan.
@@ -263,7 +270,7 @@ impl<'a> Use<'a> {
     /// The vertex of a corner, which points near it are relative to.
     fn corner(&self, positions: &[Vec3], corner: u32) -> Vec3 {
         let number = self.border.use_of_corner(corner) as usize;
-        let place = self.pass.controls[self.border.used(number).ring as usize];
+        let place = self.place(self.border.used(number).ring, 0);
         positions[self.pass.controls[(self.controls + place) as usize] as usize]
     }
 
@@ -277,9 +284,7 @@ impl<'a> Use<'a> {
         if self.number > 0 {
             return i;
         }
-        let size = self.border.used(0).size as usize;
-        let word = self.pass.controls[self.controls as usize + size + i / 2];
-        (word >> (16 * (i % 2)) & 0xffff) as usize
+        self.place(self.controls + self.border.used(0).size, i) as usize
     }
 
     /// Point `number` of its slot.

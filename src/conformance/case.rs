@@ -126,6 +126,11 @@ impl Finding {
         }
     }
 
+    /// Whether the rule holds.
+    pub(super) fn is_pass(&self) -> bool {
+        self.status == Status::Pass
+    }
+
     /// The finding of a case that saw so many vertices, words or pixels of what it drew. Where all that was compared is missing, everything
     /// seems to agree; so who saw nothing found nothing out. No case is an exception: one that expects nothing to arrive also draws
     /// something that must.

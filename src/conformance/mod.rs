@@ -4,27 +4,36 @@
 //! here and a row of [`GROUPS`]. The suite runs its cases in worker processes ([`Runner`]), so that a driver's crash or hang ends one
 //! case and no more; and holds results to a list of what the driver is known to do wrong ([`Expectations`]).
 //!
-//! Raw groups (`coordinates`, `scale`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
+//! Raw groups (`coordinates`, `connectivity`, `winding`, `scale`, `draws`, `primitive_id`, `io`, `barriers`, `precision`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
 //! what they find is the driver's. The others draw our surfaces.
 //!
 //! What the suite found in drivers stands in [`bugs`].
 
 pub mod backends;
+mod barriers;
 mod bench;
 pub mod bugs;
 mod capture;
 mod case;
+mod compute_visibility;
+mod connectivity;
 mod context;
 mod coordinates;
 pub mod deqp;
 mod determinism;
+mod draws;
 pub mod edges;
 mod expectations;
+mod geometry;
+mod io;
 mod limit;
+mod loads;
 mod meshes;
 mod models;
 mod modes;
 mod opened;
+mod precision;
+mod primitive_id;
 mod program;
 mod random;
 mod raw;
@@ -33,8 +42,10 @@ mod report;
 mod robustness;
 mod runner;
 mod scale;
+mod state;
 mod statistics;
 mod visibility;
+mod winding;
 mod witness;
 mod worker;
 

@@ -144,7 +144,7 @@ pub enum RunMode {
 
 /// Options without a meaning here. There is neither window nor surface; the log has no images and no shaders; SPIR-V comes ready-made, so that no cache is needed;
 /// and each case has a time limit and a process that may crash, whatever watches over dEQP.
-const IGNORED: [&str; 42] = [
+const IGNORED: [&str; 44] = [
     "deqp-archive-dir",
     "deqp-cl-build-options",
     "deqp-cl-device-ids",
@@ -184,8 +184,10 @@ const IGNORED: [&str; 42] = [
     "deqp-surface-height",
     "deqp-surface-type",
     "deqp-surface-width",
+    "deqp-test-iteration-count",
     "deqp-test-oom",
     "deqp-visibility",
+    "deqp-vk-device-group-id",
     "deqp-watchdog",
 ];
 

@@ -12,7 +12,7 @@ use common::cli::{fails, has_device, hullform, run, stderr, stdout};
 use serde_json::Value;
 
 /// A part of each group that is quick and whose cases no driver is known to fail.
-const PARTS: [&str; 17] = [
+const PARTS: [&str; 34] = [
     "coordinates.quads-equal.*",
     "coordinates.triangles-fractional_odd.*",
     "limit.valence.boundary-[1-5]",
@@ -30,6 +30,23 @@ const PARTS: [&str; 17] = [
     "determinism.[!c]*.ngons-equal",
     "statistics.*.*s-equal",
     "robustness.*.quads-*",
+    "connectivity.*.quads-fractional_odd-between-some",
+    "connectivity.*.triangles-equal-whole-some",
+    "connectivity.lines.*-inner-one",
+    "winding.triangles.quads-equal-*-cull_[nf]*",
+    "winding.points.*-fractional_even-*",
+    "winding.lines.*-equal-*",
+    "draws.remainder.*-3_points-*",
+    "draws.empty.*",
+    "draws.several.*-17_commands-*",
+    "primitive_id.written.*-64_patches-*",
+    "primitive_id.[gh]*-7_patches-*",
+    "io.vertices.3_in-4_out",
+    "state.points.3-*",
+    "geometry.*.quads-fractional_odd-*",
+    "barriers.[vb]*.3_invocations-1_*",
+    "precision.*.de_casteljau-*",
+    "compute_visibility.*-300_patches",
 ];
 
 /// Runs the suite and returns the statuses by name, from the CSV.

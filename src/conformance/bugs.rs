@@ -1,4 +1,5 @@
-//! What the suite found in drivers: a minimal case, the cause as far as public sources tell, and a text to file upstream.
+//! What the suite found in drivers: a minimal case, the cause as far as public sources tell, and a text to file upstream. Beside each page in
+//! `src/conformance/bugs` lies the case as a program in C of one file, which needs nothing but Vulkan.
 
 /// More than 65,536 vertices in a batch.
 pub mod vertices_per_batch {
@@ -8,4 +9,14 @@ pub mod vertices_per_batch {
 /// The number of a patch starts again inside of a draw.
 pub mod primitive_id {
     #![doc = include_str!("bugs/primitive_id.md")]
+}
+
+/// The fragment shader's number of the primitive is 0.
+pub mod fragment_primitive_id {
+    #![doc = include_str!("bugs/fragment_primitive_id.md")]
+}
+
+/// Components of a vector of the patch are written over.
+pub mod patch_components {
+    #![doc = include_str!("bugs/patch_components.md")]
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::conformance::Context;
 use crate::error::{Error, Result};
 
-/// How a case ended, in the words of deqp-runner.
+/// How a case ended, in the words of deqp-runner, which counts a lost device among the crashes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Status {
     /// The rule holds.
@@ -18,6 +18,8 @@ pub enum Status {
     Skip,
     /// The process ended in the middle of the case, or the case panicked, which is our own fault.
     Crash,
+    /// The driver gave the device up in it.
+    DeviceLost,
     /// Repetitions ended differently.
     Flake,
     /// Allowed, but not what one would wish.
@@ -32,11 +34,12 @@ pub enum Status {
 
 impl Status {
     /// Every status.
-    pub const ALL: [Status; 9] = [
+    pub const ALL: [Status; 10] = [
         Status::Pass,
         Status::Fail,
         Status::Skip,
         Status::Crash,
+        Status::DeviceLost,
         Status::Flake,
         Status::Warn,
         Status::Timeout,
@@ -50,6 +53,11 @@ impl Status {
             self,
             Status::Pass | Status::Skip | Status::Warn | Status::ExpectedFail
         )
+    }
+
+    /// Whether no other case can run in a process where one ended so.
+    pub(super) fn is_the_last(self) -> bool {
+        matches!(self, Status::Crash | Status::DeviceLost | Status::Timeout)
     }
 }
 
@@ -116,6 +124,11 @@ impl Finding {
             status: Status::Warn,
             measured: measured.into(),
         }
+    }
+
+    /// Whether the rule holds.
+    pub(super) fn is_pass(&self) -> bool {
+        self.status == Status::Pass
     }
 
     /// The finding of a case that saw so many vertices, words or pixels of what it drew. Where all that was compared is missing, everything
@@ -216,11 +229,19 @@ impl Case {
     pub fn run(&self, context: &Context) -> Finding {
         let before = context.validation_messages().len();
         context.take_seen();
-        let found = (self.run)(context).unwrap_or_else(|error| Finding::fail(error.to_string()));
+        let found = (self.run)(context).unwrap_or_else(|error| Finding {
+            status: match error {
+                Error::DeviceLost { .. } => Status::DeviceLost,
+                _ => Status::Fail,
+            },
+            measured: error.to_string(),
+        });
         let found = found.unless_blind(context.take_seen());
         match context.validation_messages().get(before) {
-            Some(message) => Finding::fail(format!("validation: {message}; {}", found.measured)),
-            None => found,
+            Some(message) if !found.status.is_the_last() => {
+                Finding::fail(format!("validation: {message}; {}", found.measured))
+            }
+            _ => found,
         }
     }
 }

@@ -6,20 +6,47 @@
 //! scale.vertices.draw.* Fail more than 65,535 vertices in a batch: bugs/vertices_per_batch.md
 //! ```
 //!
-//! The first row that matches a case counts. A case without a row is expected to pass.
+//! The first row that matches a case counts. A case without a row is expected to pass. One whose row says `Skip` is not run at all, and one whose row says `Flake`
+//! may end as it likes. Lists of deqp-runner's are read as well, see [`Lists`].
+
+mod lists;
 
 use ash::vk;
 use glob::Pattern;
+use regex::Regex;
 
-use crate::conformance::Status;
+use crate::conformance::{Status, deqp};
 use crate::error::{Error, Place, Result};
 use crate::gpu::{Driver, Version};
 
+pub use lists::Lists;
+
+/// Which cases a row is for.
+#[derive(Clone, Debug)]
+pub enum Cases {
+    /// Those whose names match a pattern in which `*` stands for any part.
+    Matching(Pattern),
+    /// Those in whose names, with [`PACKAGE`](crate::conformance::deqp::PACKAGE) before them, an expression is found: deqp-runner's form.
+    Containing(Regex),
+    /// One.
+    Named(String),
+}
+
+impl Cases {
+    fn has(&self, case: &str) -> bool {
+        match self {
+            Cases::Matching(pattern) => pattern.matches(case),
+            Cases::Containing(expression) => expression.is_match(&deqp::path(case)),
+            Cases::Named(name) => name == case,
+        }
+    }
+}
+
 /// A row of a list.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Expectation {
     /// The cases.
-    pub cases: Pattern,
+    pub cases: Cases,
     /// How they end.
     pub status: Status,
     /// Why.
@@ -27,7 +54,7 @@ pub struct Expectation {
 }
 
 /// The list for a driver.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Expectations {
     /// Its name: that of a shipped list, or of the user's file; empty for none.
     pub name: String,
@@ -82,30 +109,21 @@ impl Expectations {
     /// # Errors
     /// [`Error::Input`] names the line.
     pub fn parse(name: &str, text: &str) -> Result<Expectations> {
-        let lines = text
-            .lines()
-            .map(|line| line.split('#').next().unwrap_or_default().trim());
-        let rows = (1..)
-            .zip(lines)
-            .filter(|(_, line)| !line.is_empty())
-            .map(|(number, line)| {
-                row(line).map_err(|problem| {
-                    Error::input(
-                        Place::Line(name.into(), number),
-                        problem,
-                        "write a pattern of case names, a status and the reason",
-                    )
-                })
-            });
+        let remedy = "write a pattern of case names, a status and the reason";
         Ok(Expectations {
             name: name.into(),
-            rows: rows.collect::<Result<_>>()?,
+            rows: rows(name, text, remedy, row)?,
         })
     }
 
     /// The row for a case.
     pub fn row(&self, case: &str) -> Option<&Expectation> {
-        self.rows.iter().find(|row| row.cases.matches(case))
+        self.rows.iter().find(|row| row.cases.has(case))
+    }
+
+    /// The row for a case that says not to run it.
+    pub fn left_out(&self, case: &str) -> Option<&Expectation> {
+        self.row(case).filter(|row| row.status == Status::Skip)
     }
 
     /// What a case's own status comes to, and why.
@@ -119,11 +137,31 @@ impl Expectations {
             Status::Pass if row.status == Status::Pass => (Status::Pass, None),
             // What is skipped says nothing about the fault.
             Status::Skip => (Status::Skip, None),
+            Status::Pass if row.status == Status::Flake => (Status::Pass, None),
+            _ if row.status == Status::Flake => (Status::ExpectedFail, reason),
             Status::Pass => (Status::UnexpectedImprovement, reason),
             found if found == row.status => (Status::ExpectedFail, reason),
             found => (found, None),
         }
     }
+}
+
+/// Reads the rows of a text, a line each, by `read`; what follows `#` is a comment.
+fn rows(
+    name: &str,
+    text: &str,
+    remedy: &str,
+    read: impl Fn(&str) -> std::result::Result<Expectation, String>,
+) -> Result<Vec<Expectation>> {
+    let lines = text
+        .lines()
+        .map(|line| line.split('#').next().unwrap_or_default().trim());
+    let lines = (1..).zip(lines).filter(|(_, line)| !line.is_empty());
+    let rows = lines.map(|(number, line)| {
+        read(line)
+            .map_err(|problem| Error::input(Place::Line(name.into(), number), problem, remedy))
+    });
+    rows.collect()
 }
 
 fn row(line: &str) -> std::result::Result<Expectation, String> {
@@ -134,8 +172,10 @@ fn row(line: &str) -> std::result::Result<Expectation, String> {
         .trim_start()
         .split_once(char::is_whitespace)
         .ok_or("the reason is missing")?;
+    let pattern =
+        Pattern::new(cases).map_err(|error| format!("'{cases}' is no pattern: {error}"))?;
     Ok(Expectation {
-        cases: Pattern::new(cases).map_err(|error| format!("'{cases}' is no pattern: {error}"))?,
+        cases: Cases::Matching(pattern),
         status: status.parse().map_err(|error: Error| error.to_string())?,
         reason: reason.trim_start().into(),
     })
@@ -174,12 +214,12 @@ mod tests {
             id: vk::DriverId::MESA_RADV,
             ..lavapipe(Version(25, 0, 0))
         };
-        assert_eq!(Expectations::of(&other), Expectations::default());
+        assert!(Expectations::of(&other).rows.is_empty());
     }
 
     #[test]
     fn rows_decide() {
-        let text = "# a comment\na.good.* Pass it is only the others\na.* Fail known # and a remark\n\nb.* Crash it does";
+        let text = "# a comment\na.good.* Pass it is only the others\na.* Fail known # and a remark\n\nb.* Crash it does\nf.* Flake now and then";
         let list = Expectations::parse("list", text).expect("it is one");
         let judge = |case, found| list.judge(case, found).0;
         assert_eq!(judge("a.x.y", Status::Fail), Status::ExpectedFail);
@@ -190,6 +230,8 @@ mod tests {
         assert_eq!(judge("a.good.y", Status::Fail), Status::Fail);
         assert_eq!(judge("b.x.y", Status::Crash), Status::ExpectedFail);
         assert_eq!(judge("c.x.y", Status::Fail), Status::Fail);
+        assert_eq!(judge("f.x.y", Status::Fail), Status::ExpectedFail);
+        assert_eq!(judge("f.x.y", Status::Pass), Status::Pass);
         assert_eq!(list.judge("a.x.y", Status::Fail).1, Some("known"));
     }
 

@@ -4,26 +4,37 @@
 //! here and a row of [`GROUPS`]. The suite runs its cases in worker processes ([`Runner`]), so that a driver's crash or hang ends one
 //! case and no more; and holds results to a list of what the driver is known to do wrong ([`Expectations`]).
 //!
-//! Raw groups (`coordinates`, `scale`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
+//! Raw groups (`coordinates`, `connectivity`, `winding`, `scale`, `draws`, `primitive_id`, `io`, `barriers`, `precision`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
 //! what they find is the driver's. The others draw our surfaces.
 //!
 //! What the suite found in drivers stands in [`bugs`].
 
 pub mod backends;
+mod barriers;
 mod bench;
 pub mod bugs;
 mod capture;
 mod case;
+mod compute_visibility;
+mod connectivity;
 mod context;
 mod coordinates;
+pub mod deqp;
 mod determinism;
+mod draws;
 pub mod edges;
 mod expectations;
+mod geometry;
+mod io;
 mod limit;
+mod loads;
 mod meshes;
 mod models;
 mod modes;
 mod opened;
+mod precision;
+mod primitive_id;
+mod program;
 mod random;
 mod raw;
 mod registry;
@@ -31,17 +42,20 @@ mod report;
 mod robustness;
 mod runner;
 mod scale;
+mod state;
 mod statistics;
 mod visibility;
+mod winding;
 mod witness;
 mod worker;
 
 pub use case::{Case, Check, Finding, Group, LIMIT, Status};
 pub use context::{Context, Fault, FaultKind, Settings};
-pub use expectations::{Expectation, Expectations};
+pub use expectations::{Cases, Expectation, Expectations, Lists};
 pub use opened::Opened;
+pub use program::own_program;
 pub use random::Random;
 pub use registry::{GROUPS, Registry};
 pub use report::{CaseResult, Report};
-pub use runner::{RunOptions, Runner};
+pub use runner::{RunOptions, Runner, Turn};
 pub use worker::work;

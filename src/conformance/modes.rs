@@ -8,6 +8,7 @@ use crate::gpu::shaders;
 
 /// SPIR-V, section "Execution Mode".
 mod mode {
+    pub const INVOCATIONS: u32 = 0;
     pub const SPACING_EQUAL: u32 = 1;
     pub const SPACING_FRACTIONAL_EVEN: u32 = 2;
     pub const SPACING_FRACTIONAL_ODD: u32 = 3;
@@ -135,10 +136,20 @@ impl Modes {
 
 /// A control shader with so many output vertices, hence invocations, instead of its own.
 pub fn with_invocations(words: &[u32], invocations: u32) -> Vec<u32> {
+    with_number(words, mode::OUTPUT_VERTICES, invocations)
+}
+
+/// A geometry shader with so many invocations instead of its own.
+pub fn with_geometry_invocations(words: &[u32], invocations: u32) -> Vec<u32> {
+    with_number(words, mode::INVOCATIONS, invocations)
+}
+
+/// A module with another number in a mode that it has.
+fn with_number(words: &[u32], mode: u32, number: u32) -> Vec<u32> {
     rewrite(words, |instruction, out| {
         let mut instruction = instruction.to_vec();
-        if instruction[2] == mode::OUTPUT_VERTICES {
-            instruction[3] = invocations;
+        if instruction[2] == mode {
+            instruction[3] = number;
         }
         out.extend(instruction);
     })

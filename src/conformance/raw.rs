@@ -1,5 +1,7 @@
 //! Draws with shaders of the suite's own, without any of the layers that our surfaces have.
 
+mod recorder;
+
 use std::borrow::Cow;
 
 use ash::vk;
@@ -7,14 +9,14 @@ use gpu_allocator::MemoryLocation;
 
 use crate::conformance::modes::module;
 use crate::error::Result;
-use crate::gpu::ring::{RING_STAGES, cmd_ring_barrier};
 use crate::gpu::{Buffer, failed};
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery, StorageSet};
 
+pub use recorder::{Event, Recorder, Scope};
+
 /// Stages that see the buffers and the push constants.
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
-    vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
-        | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw(),
+    vk::ShaderStageFlags::ALL_GRAPHICS.as_raw() | vk::ShaderStageFlags::COMPUTE.as_raw(),
 );
 
 /// The greatest push constants that the suite's shaders have.
@@ -29,20 +31,63 @@ pub enum Raster {
     Solid,
     /// The same, only for those that face the viewer: counter-clockwise ones.
     Front,
+    /// The same, without those that are culled.
+    Culled(vk::CullModeFlags, vk::FrontFace),
 }
 
-/// What a pipeline is made of, beside the vertex shader that all share.
+/// What a pipeline is made of. Words are those of modules.
 pub struct Program {
-    /// Words of the control shader.
-    pub control: Cow<'static, [u32]>,
-    /// Words of the evaluation shader.
-    pub evaluation: Cow<'static, [u32]>,
+    /// The vertex shader.
+    pub vertex: &'static [u32],
+    /// The control and the evaluation shader; without them there are no patches, but triangles.
+    pub tessellation: Option<[Cow<'static, [u32]>; 2]>,
+    /// The geometry shader, if there is one.
+    pub geometry: Option<Cow<'static, [u32]>>,
+    /// The fragment shader, where anything is drawn.
+    pub fragment: &'static [u32],
     /// Control points a patch.
     pub control_points: u32,
-    /// Constant 0 of the control shader.
-    pub constant: u32,
+    /// Constants 0, 1, ... of all shaders.
+    pub constants: Vec<u32>,
     /// What becomes of the triangles.
     pub raster: Raster,
+    /// Where the domain has its origin.
+    pub origin: vk::TessellationDomainOrigin,
+}
+
+impl Program {
+    /// Patches of one control point each, whose numbers are drawn.
+    pub fn new(
+        control: impl Into<Cow<'static, [u32]>>,
+        evaluation: impl Into<Cow<'static, [u32]>>,
+    ) -> Result<Program> {
+        Ok(Program {
+            vertex: module("patch.vert")?,
+            tessellation: Some([control.into(), evaluation.into()]),
+            geometry: None,
+            fragment: module("solid.frag")?,
+            control_points: 1,
+            constants: Vec::new(),
+            raster: Raster::Solid,
+            origin: vk::TessellationDomainOrigin::UPPER_LEFT,
+        })
+    }
+
+    /// The stages that it has, with their modules' words.
+    fn stages(&self) -> Vec<(vk::ShaderStageFlags, &[u32])> {
+        let mut stages: Vec<(vk::ShaderStageFlags, &[u32])> =
+            vec![(vk::ShaderStageFlags::VERTEX, self.vertex)];
+        if let Some([control, evaluation]) = &self.tessellation {
+            stages.push((vk::ShaderStageFlags::TESSELLATION_CONTROL, control));
+            stages.push((vk::ShaderStageFlags::TESSELLATION_EVALUATION, evaluation));
+        }
+        let geometry = self.geometry.iter();
+        stages.extend(geometry.map(|words| (vk::ShaderStageFlags::GEOMETRY, &**words)));
+        if self.raster != Raster::Discard {
+            stages.push((vk::ShaderStageFlags::FRAGMENT, self.fragment));
+        }
+        stages
+    }
 }
 
 /// Storage buffers at bindings 0, 1, ... that the host sees, a picture, and pipelines over them.
@@ -136,23 +181,10 @@ impl<'a> Raw<'a> {
 
     /// Builds a pipeline, which lives as long as this.
     pub fn pipeline(&mut self, program: &Program) -> Result<vk::Pipeline> {
-        let vertex = module("patch.vert")?;
-        let fragment = module("solid.frag")?;
-        let mut stages: Vec<(vk::ShaderStageFlags, &[u32])> = vec![
-            (vk::ShaderStageFlags::VERTEX, vertex),
-            (vk::ShaderStageFlags::TESSELLATION_CONTROL, &program.control),
-            (
-                vk::ShaderStageFlags::TESSELLATION_EVALUATION,
-                &program.evaluation,
-            ),
-        ];
-        if program.raster != Raster::Discard {
-            stages.push((vk::ShaderStageFlags::FRAGMENT, fragment));
-        }
         let device = self.device.raw();
         let mut modules = Vec::new();
         let mut made = Ok(());
-        for (stage, words) in stages {
+        for (stage, words) in program.stages() {
             let info = vk::ShaderModuleCreateInfo::default().code(words);
             // SAFETY: the words are a valid module: one that ships, with valid modes in the place of its own.
             match unsafe { device.create_shader_module(&info, None) } {
@@ -174,28 +206,38 @@ impl<'a> Raw<'a> {
         program: &Program,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
-        let constant = program.constant.to_le_bytes();
-        let entries = [vk::SpecializationMapEntry::default().size(4)];
+        let constants: &[u8] = bytemuck::cast_slice(&program.constants);
+        let entry = |id: u32| {
+            vk::SpecializationMapEntry::default()
+                .constant_id(id)
+                .offset(4 * id)
+                .size(4)
+        };
+        let entries: Vec<_> = (0..program.constants.len() as u32).map(entry).collect();
         let special = vk::SpecializationInfo::default()
             .map_entries(&entries)
-            .data(&constant);
+            .data(constants);
         let stage = |&(stage, module): &(vk::ShaderStageFlags, vk::ShaderModule)| {
-            let info = vk::PipelineShaderStageCreateInfo::default()
+            vk::PipelineShaderStageCreateInfo::default()
                 .stage(stage)
                 .module(module)
-                .name(c"main");
-            if stage == vk::ShaderStageFlags::TESSELLATION_CONTROL {
-                info.specialization_info(&special)
-            } else {
-                info
-            }
+                .name(c"main")
+                .specialization_info(&special)
         };
         let stages: Vec<_> = modules.iter().map(stage).collect();
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::PATCH_LIST);
+        let has_patches = program.tessellation.is_some();
+        let assembly =
+            vk::PipelineInputAssemblyStateCreateInfo::default().topology(if has_patches {
+                vk::PrimitiveTopology::PATCH_LIST
+            } else {
+                vk::PrimitiveTopology::TRIANGLE_LIST
+            });
+        let mut origin = vk::PipelineTessellationDomainOriginStateCreateInfo::default()
+            .domain_origin(program.origin);
         let tessellation = vk::PipelineTessellationStateCreateInfo::default()
-            .patch_control_points(program.control_points);
+            .patch_control_points(program.control_points)
+            .push_next(&mut origin);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
@@ -212,7 +254,6 @@ impl<'a> Raw<'a> {
             .stages(&stages)
             .vertex_input_state(&vertex_input)
             .input_assembly_state(&assembly)
-            .tessellation_state(&tessellation)
             .viewport_state(&viewport)
             .rasterization_state(&rasterization)
             .multisample_state(&multisample)
@@ -221,11 +262,60 @@ impl<'a> Raw<'a> {
             .dynamic_state(&dynamic)
             .layout(self.layout)
             .render_pass(self.target.render_pass());
+        let info = if has_patches {
+            info.tessellation_state(&tessellation)
+        } else {
+            info
+        };
         let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
         // SAFETY: everything that the info points to lives through the call and is of this device.
         let made = unsafe { device.create_graphics_pipelines(cache, &[info], None) };
         made.map(|pipelines| pipelines[0])
             .map_err(|(_, code)| failed("vkCreateGraphicsPipelines")(code))
+    }
+
+    /// Builds a compute pipeline, which lives as long as this.
+    pub fn compute_pipeline(&mut self, words: &[u32]) -> Result<vk::Pipeline> {
+        let device = self.device.raw();
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
+        // SAFETY: the words are a valid module, one that ships.
+        let module = unsafe { device.create_shader_module(&info, None) }
+            .map_err(failed("vkCreateShaderModule"))?;
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module)
+            .name(c"main");
+        let info = vk::ComputePipelineCreateInfo::default()
+            .stage(stage)
+            .layout(self.layout);
+        let cache = vk::PipelineCache::null();
+        // SAFETY: all that the info points to lives through the calls and is of this device; modules are not needed once the pipeline is there.
+        let made = unsafe {
+            let made = device.create_compute_pipelines(cache, &[info], None);
+            device.destroy_shader_module(module, None);
+            made
+        };
+        let pipeline = made
+            .map(|pipelines| pipelines[0])
+            .map_err(|(_, code)| failed("vkCreateComputePipelines")(code))?;
+        self.pipelines.push(pipeline);
+        Ok(pipeline)
+    }
+
+    fn recorder(&self, cmd: vk::CommandBuffer) -> Recorder<'_> {
+        Recorder {
+            device: self.device.raw(),
+            raw: self,
+            cmd,
+        }
+    }
+
+    /// Records commands that need no render pass, submits, and waits.
+    pub fn submit_outside(&self, commands: impl FnOnce(&Recorder<'_>)) -> Result<()> {
+        self.device.submit(|cmd| {
+            commands(&self.recorder(cmd));
+            Ok(())
+        })
     }
 
     /// Records `draws` inside of a render pass over a black picture, submits, and waits. `query` counts what they do.
@@ -234,21 +324,35 @@ impl<'a> Raw<'a> {
         query: Option<&StatisticsQuery>,
         draws: impl FnOnce(&Recorder<'_>),
     ) -> Result<()> {
-        let recorder = |cmd| Recorder {
-            device: self.device.raw(),
-            raw: self,
-            cmd,
-        };
+        self.submit_all(query, |_| (), draws)
+    }
+
+    /// The same behind commands outside of the pass.
+    pub fn submit_behind(
+        &self,
+        before: impl FnOnce(&Recorder<'_>),
+        draws: impl FnOnce(&Recorder<'_>),
+    ) -> Result<()> {
+        self.submit_all(None, before, draws)
+    }
+
+    fn submit_all(
+        &self,
+        query: Option<&StatisticsQuery>,
+        before: impl FnOnce(&Recorder<'_>),
+        draws: impl FnOnce(&Recorder<'_>),
+    ) -> Result<()> {
         // SAFETY: recording on the device that made everything: the query's reset outside of the pass, the rest in it.
         self.device.submit(|cmd| unsafe {
             if let Some(query) = query {
                 query.cmd_reset(cmd);
             }
+            before(&self.recorder(cmd));
             self.target.begin(cmd, [0.0; 4]);
             if let Some(query) = query {
                 query.cmd_begin(cmd);
             }
-            draws(&recorder(cmd));
+            draws(&self.recorder(cmd));
             if let Some(query) = query {
                 query.cmd_end(cmd);
             }
@@ -265,7 +369,8 @@ impl<'a> Raw<'a> {
         let barrier = vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
             .dst_access_mask(vk::AccessFlags::HOST_READ);
-        let (stages, host) = (RING_STAGES, vk::PipelineStageFlags::HOST);
+        let stages = vk::PipelineStageFlags::ALL_GRAPHICS;
+        let host = vk::PipelineStageFlags::HOST;
         let none = vk::DependencyFlags::empty();
         // SAFETY: this function's contract.
         unsafe {
@@ -277,15 +382,18 @@ impl<'a> Raw<'a> {
 }
 
 fn rasterization(raster: Raster) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+    let (cull, front) = match raster {
+        Raster::Discard | Raster::Solid => {
+            (vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE)
+        }
+        Raster::Front => (vk::CullModeFlags::BACK, vk::FrontFace::COUNTER_CLOCKWISE),
+        Raster::Culled(cull, front) => (cull, front),
+    };
     vk::PipelineRasterizationStateCreateInfo::default()
         .rasterizer_discard_enable(raster == Raster::Discard)
         .polygon_mode(vk::PolygonMode::FILL)
-        .cull_mode(if raster == Raster::Front {
-            vk::CullModeFlags::BACK
-        } else {
-            vk::CullModeFlags::NONE
-        })
-        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .cull_mode(cull)
+        .front_face(front)
         .line_width(1.0)
 }
 
@@ -306,85 +414,5 @@ impl Drop for Raw<'_> {
                 buffer.destroy(device, allocator);
             }
         }
-    }
-}
-
-/// Records draws inside of the render pass. Draws of one submission that write the same memory need a [`barrier`](Self::barrier) between
-/// them.
-pub struct Recorder<'a> {
-    device: &'a ash::Device,
-    raw: &'a Raw<'a>,
-    cmd: vk::CommandBuffer,
-}
-
-impl Recorder<'_> {
-    /// Binds a pipeline with all buffers, and sets the push constants.
-    pub fn bind<T: bytemuck::NoUninit>(&self, pipeline: vk::Pipeline, constants: &T) {
-        let bytes = bytemuck::bytes_of(constants);
-        let graphics = vk::PipelineBindPoint::GRAPHICS;
-        let layout = self.raw.layout;
-        let sets = self.raw.set.as_slice();
-        let sets: Vec<vk::DescriptorSet> = sets.iter().map(StorageSet::raw).collect();
-        // SAFETY: recording inside of the pass that the pipeline was made for; all of one device.
-        unsafe {
-            let device = self.device;
-            device.cmd_bind_pipeline(self.cmd, graphics, pipeline);
-            device.cmd_bind_descriptor_sets(self.cmd, graphics, layout, 0, &sets, &[]);
-            device.cmd_push_constants(self.cmd, layout, STAGES, 0, bytes);
-        }
-    }
-
-    /// A draw without indices.
-    pub fn draw(&self, vertices: u32, instances: u32, first_vertex: u32, first_instance: u32) {
-        // SAFETY: a pipeline is bound; nothing is fetched but by the vertex's number.
-        unsafe {
-            self.device
-                .cmd_draw(self.cmd, vertices, instances, first_vertex, first_instance)
-        };
-    }
-
-    /// A draw with the 32-bit indices in a buffer.
-    pub fn draw_indexed(&self, binding: usize, indices: u32, instances: u32, offset: i32) {
-        self.bind_indices(binding);
-        // SAFETY: a pipeline and indices are bound, and the caller's buffer holds so many.
-        unsafe {
-            self.device
-                .cmd_draw_indexed(self.cmd, indices, instances, 0, offset, 0)
-        };
-    }
-
-    /// A draw whose arguments are the first words of a buffer.
-    pub fn draw_indirect(&self, arguments: usize) {
-        let buffer = self.raw.buffer(arguments);
-        let stride = size_of::<vk::DrawIndirectCommand>() as u32;
-        // SAFETY: a pipeline is bound; the host wrote the arguments before the submission.
-        unsafe {
-            self.device
-                .cmd_draw_indirect(self.cmd, buffer, 0, 1, stride)
-        };
-    }
-
-    /// A draw with indices whose arguments are the first words of a buffer.
-    pub fn draw_indexed_indirect(&self, binding: usize, arguments: usize) {
-        self.bind_indices(binding);
-        let buffer = self.raw.buffer(arguments);
-        let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
-        // SAFETY: as above, and indices are bound.
-        unsafe {
-            self.device
-                .cmd_draw_indexed_indirect(self.cmd, buffer, 0, 1, stride)
-        };
-    }
-
-    /// Lets the next draw use the memory of the one before.
-    pub fn barrier(&self) {
-        // SAFETY: inside of a pass that was made with the dependency for it.
-        unsafe { cmd_ring_barrier(self.device, self.cmd) };
-    }
-
-    fn bind_indices(&self, binding: usize) {
-        let (buffer, kind) = (self.raw.buffer(binding), vk::IndexType::UINT32);
-        // SAFETY: the buffer was made to hold indices.
-        unsafe { self.device.cmd_bind_index_buffer(self.cmd, buffer, 0, kind) };
     }
 }

@@ -3,23 +3,34 @@
 use glob::Pattern;
 
 use crate::conformance::{
-    Case, Group, backends, coordinates, determinism, edges, limit, robustness, scale, statistics,
-    visibility, witness,
+    Case, Group, backends, barriers, compute_visibility, connectivity, coordinates, determinism,
+    draws, edges, geometry, io, limit, precision, primitive_id, robustness, scale, state,
+    statistics, visibility, winding, witness,
 };
 use crate::error::{Error, Result};
 
 /// Every group.
 pub const GROUPS: &[Group] = &[
     coordinates::GROUP,
+    connectivity::GROUP,
+    winding::GROUP,
     limit::GROUP,
     witness::GROUP,
     edges::GROUP,
     backends::GROUP,
     scale::GROUP,
+    draws::GROUP,
+    primitive_id::GROUP,
+    io::GROUP,
+    state::GROUP,
+    geometry::GROUP,
+    barriers::GROUP,
+    precision::GROUP,
     visibility::GROUP,
     determinism::GROUP,
     statistics::GROUP,
     robustness::GROUP,
+    compute_visibility::GROUP,
 ];
 
 /// Cases to run, in order.

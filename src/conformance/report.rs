@@ -95,12 +95,13 @@ impl Report {
     pub fn csv(&self) -> String {
         let mut text = String::new();
         for result in &self.results {
+            let CaseResult { name, seconds, .. } = result;
+            let status = match result.status {
+                Status::DeviceLost => Status::Crash,
+                status => status,
+            };
             // Names have neither commas nor quotes.
-            let _ = writeln!(
-                text,
-                "{},{},{:.6}",
-                result.name, result.status, result.seconds
-            );
+            let _ = writeln!(text, "{name},{status},{seconds:.6}");
         }
         text
     }

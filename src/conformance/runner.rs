@@ -1,6 +1,7 @@
 //! The runner's side: worker processes, time limits, repetitions, and results that are never lost.
 
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::ops::ControlFlow;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -32,6 +33,15 @@ pub struct RunOptions {
     pub jobs: usize,
     /// A time limit for all cases instead of their own.
     pub limit: Option<Duration>,
+}
+
+/// What happens while cases run in turn.
+#[derive(Debug)]
+pub enum Turn<'a> {
+    /// This one begins.
+    Begin(&'a Case),
+    /// It has ended so.
+    End(&'a Case, &'a CaseResult),
 }
 
 /// Runs cases in worker processes.
@@ -84,6 +94,28 @@ impl Runner<'_> {
         })
     }
 
+    /// Runs the cases one after the other, for who follows them: `tell` hears when each begins and how it ended. Where it breaks off, no other case
+    /// begins. `stop` is as in [`run`](Self::run).
+    pub fn run_in_turn(
+        &self,
+        cases: &[Case],
+        stop: &AtomicBool,
+        mut tell: impl FnMut(Turn<'_>) -> ControlFlow<()>,
+    ) {
+        let mut worker = None;
+        for case in cases {
+            if tell(Turn::Begin(case)).is_break() {
+                return;
+            }
+            let Some(result) = self.repeated(case, stop, &mut worker) else {
+                return;
+            };
+            if tell(Turn::End(case, &result)).is_break() {
+                return;
+            }
+        }
+    }
+
     /// One worker after another, until no case is left.
     fn take_cases(
         &self,
@@ -113,11 +145,21 @@ impl Runner<'_> {
         worker: &mut Option<Worker>,
     ) -> Option<CaseResult> {
         let started = Instant::now();
+        if let Some(row) = self.expectations.left_out(&case.name) {
+            return Some(CaseResult {
+                name: case.name.clone(),
+                status: Status::Skip,
+                found: Status::Skip,
+                measured: "not run".into(),
+                reason: Some(row.reason.clone()),
+                seconds: 0.0,
+            });
+        }
         let limit = self.options.limit.unwrap_or(case.limit);
         let mut findings: Vec<Finding> = Vec::new();
         for run in 0..self.options.repeat.max(1) {
             let finding = self.once(&case.name, run, limit, stop, worker)?;
-            let lost = matches!(finding.status, Status::Crash | Status::Timeout);
+            let lost = finding.status.is_the_last();
             findings.push(finding);
             if lost {
                 break;

@@ -4,8 +4,6 @@
 //! proves little, for it runs one stage after the other; the group is for those that do not. A seeded fault lets the reader expect something
 //! else than was written.
 
-use std::borrow::Cow;
-
 use crate::conformance::modes::{module, with_invocations};
 use crate::conformance::raw::{Program, Raster, Raw, Recorder};
 use crate::conformance::{Case, Check, Context, Finding, Group};
@@ -110,12 +108,11 @@ impl Bed<'_> {
         };
         let mut raw = Raw::new(device, &sizes, 16)?;
         let control = module(&format!("visibility-{}.tesc", form.name))?;
+        let evaluation = module(&format!("visibility-{}.tese", form.name))?;
         let pipeline = raw.pipeline(&Program {
-            control: Cow::Owned(with_invocations(control, invocations)),
-            evaluation: Cow::Borrowed(module(&format!("visibility-{}.tese", form.name))?),
-            control_points: 1,
-            constant: invocations,
+            constants: vec![invocations],
             raster: Raster::Discard,
+            ..Program::new(with_invocations(control, invocations), evaluation)?
         })?;
         Ok(Bed {
             context,

@@ -4,7 +4,7 @@
 //! each request `begin` and `end STATUS MEASURED`, all behind [`MARK`]: a driver may print whatever it likes.
 //!
 //! A panic is a fault of ours, and shall not look like one of the driver's: it is caught and told as what it is, and the process makes way for
-//! another.
+//! another. So does one whose device is lost.
 
 use std::io::{BufRead, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -98,9 +98,10 @@ pub fn work(
             context.seed_fault(name, run);
             find_out(context, registry, name)
         }));
-        let panicked = found.is_err();
-        answer(Answer::End(found.unwrap_or_else(|_| our_own(&said))))?;
-        if panicked {
+        let found = found.unwrap_or_else(|_| our_own(&said));
+        let is_the_last = found.status.is_the_last();
+        answer(Answer::End(found))?;
+        if is_the_last {
             return Ok(());
         }
     }

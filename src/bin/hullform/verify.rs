@@ -1,13 +1,16 @@
 //! `hullform verify`: the conformance suite.
 
+mod files;
+mod known;
+
 use crate::drawing;
 use crate::options::{self, Global, Json};
-use crate::output::{self, Contents, Pending, junit};
 use crate::{interrupt, model, print, print_json};
 use clap::Args;
+use files::Files;
 use hullform::conformance::{
     Case, CaseResult, Context, Expectations, Fault, Finding, Opened, Registry, Report, RunOptions,
-    Runner, Settings, Status, work,
+    Runner, Settings, Status, own_program, work,
 };
 use hullform::host::{Device, Instance};
 use hullform::mesh::Model;
@@ -17,7 +20,7 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::io::{self, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -45,9 +48,13 @@ pub struct Arguments {
     /// Write results as lines of name,Status,seconds
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// What the driver is known to do wrong [default: the list that is shipped for it, if any]
+    /// What the driver is known to do wrong: rows of pattern, status and reason, or deqp-runner's NAME-fails.txt, with which NAME-flakes.txt and NAME-skips.txt
+    /// are read [default: the list that is shipped for it, if any]
     #[arg(long, value_name = "FILE")]
     expectations: Option<PathBuf>,
+    /// Write what went wrong as deqp-runner's lists: NAME-fails.txt, NAME-flakes.txt, NAME-skips.txt
+    #[arg(long, value_name = "NAME")]
+    export_expectations: Option<String>,
     /// Run each case so often; different results are a flake
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
@@ -167,40 +174,6 @@ fn list(cases: &[Case], global: &Global) -> Result<()> {
     print(&names.join("\n"))
 }
 
-/// The files to write, as CSV, JUnit's XML and JSON, opened before the work begins.
-struct Files([Option<Pending>; 3]);
-
-impl Files {
-    fn create(arguments: &Arguments) -> Result<Files> {
-        let models = arguments.models.iter();
-        let models = models.filter_map(|model| model::file(Some(model)));
-        let reads: Vec<&Path> = models.chain(arguments.expectations.as_deref()).collect();
-        let json = match &arguments.json {
-            Some(Json::File(path)) => Some(path),
-            _ => None,
-        };
-        let asked = [
-            ("--csv", arguments.csv.as_ref()),
-            ("--junit", arguments.junit.as_ref()),
-            ("--json", json),
-        ];
-        let writes = asked.iter();
-        let writes = writes.filter_map(|&(option, path)| Some((option, path?.as_path())));
-        let mut made = output::create(&reads, &writes.collect::<Vec<_>>())?.into_iter();
-        Ok(Files(asked.map(|(_, path)| path.and_then(|_| made.next()))))
-    }
-
-    fn write(self, report: &Report, json: &Value) -> Result<()> {
-        let contents: [&Contents; 3] = [
-            &|out| out.write_all(report.csv().as_bytes()),
-            &|out| junit::write(out, report),
-            &|out| writeln!(out, "{json:#}"),
-        ];
-        let files = self.0.into_iter().zip(contents);
-        output::write(files.filter_map(|(file, contents)| Some((file?, contents))))
-    }
-}
-
 fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> {
     for model in &arguments.models {
         model::load(Some(model), &arguments.shape)?;
@@ -220,7 +193,7 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
     let asking = interrupt::ask();
     let device = chosen_device(&runner, asking.asked(), global)?;
     let opened = device.as_ref().and_then(|found| found.as_ref().ok());
-    let expectations = expectations(arguments, opened)?;
+    let expectations = known::expectations(arguments.expectations.as_deref(), opened)?;
     runner.expectations = &expectations;
     let report = match &device {
         // Interrupted before anything began.
@@ -284,18 +257,6 @@ fn lost_device(cases: &[Case], lost: &Finding) -> Report {
     Report::lost(cases, &reason)
 }
 
-fn expectations(arguments: &Arguments, device: Option<&Opened>) -> Result<Expectations> {
-    let Some(path) = &arguments.expectations else {
-        let known = device.map(|device| Expectations::of(&device.driver));
-        return Ok(known.unwrap_or_default());
-    };
-    let text = std::fs::read_to_string(path).map_err(|source| Error::File {
-        path: path.clone(),
-        source,
-    })?;
-    Expectations::parse(&path.display().to_string(), &text)
-}
-
 fn jobs(arguments: &Arguments) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
     arguments.jobs.map_or(cores.min(4), |jobs| jobs as usize)
@@ -303,8 +264,7 @@ fn jobs(arguments: &Arguments) -> usize {
 
 /// The command line of a worker.
 fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<OsString>> {
-    let mut words: Vec<String> = vec![this_program()?, "verify".into()];
-    words.push("--worker".into());
+    let mut words: Vec<String> = vec!["verify".into(), "--worker".into()];
     words.push(format!("--seed={}", arguments.seed));
     words.push(format!("--ring-bytes={}", global.ring_bytes));
     words.push(format!("--slots={}", global.slots.name()));
@@ -325,6 +285,7 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<OsString>> {
     words.extend(arguments.shape.words());
     words.push("--".into());
     let mut words: Vec<OsString> = words.into_iter().map(Into::into).collect();
+    words.insert(0, own_program()?.into());
     words.extend(
         arguments
             .models
@@ -332,24 +293,6 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<OsString>> {
             .map(|model| model.clone().into_os_string()),
     );
     Ok(words)
-}
-
-/// Linux's name for the program that a process was started from, whatever has become of its file since: a process that has just been forked has the
-/// runner's.
-const OWN: &str = "/proc/self/exe";
-
-/// Where this program is; without `/proc`, as in some containers, where it was or what it was called by. A program that is built anew while
-/// its cases run shall not take its results for theirs, nor be missing.
-fn this_program() -> Result<String> {
-    if std::fs::metadata(OWN).is_ok() {
-        return Ok(OWN.into());
-    }
-    let path = std::env::current_exe().ok();
-    let called = || std::env::args_os().next().map(PathBuf::from);
-    let path = path.or_else(called).ok_or_else(|| {
-        Error::Refused("this program cannot find itself, to start its workers".into())
-    })?;
-    Ok(path.display().to_string())
 }
 
 fn command(words: &[OsString]) -> Command {

@@ -12,7 +12,7 @@ use crate::conformance::modes::{Domain, Modes, Spacing};
 use crate::conformance::{Case, Context, Finding, Group};
 use crate::error::Result;
 
-pub use reference::{TessLevels, segments};
+pub use reference::{TessLevels, segments, vertex_count};
 pub use shot::{Shot, shoot, shoot_with};
 
 /// The group.

@@ -92,6 +92,19 @@ pub fn vertices(domain: Domain, outer: &[Cuts], inner: &[Cuts]) -> Vec<DVec3> {
     }
 }
 
+/// How many vertices a patch has.
+pub fn vertex_count(domain: Domain, spacing: Spacing, levels: &TessLevels, most: f32) -> usize {
+    let count = |&level: &f32| segments(spacing, level, most);
+    let (outer, inner) = (levels.outer(domain), levels.inner(domain));
+    let divided = outer.iter().chain(inner).any(|level| count(level) > 1);
+    let outer: Vec<Cuts> = outer.iter().map(|level| equal_cuts(count(level))).collect();
+    let inner = inner.iter().map(|level| match count(level) {
+        1 if divided => barely_divided(spacing),
+        count => equal_cuts(count),
+    });
+    vertices(domain, &outer, &inner.collect::<Vec<_>>()).len()
+}
+
 /// "Quad Tessellation": the outer edges by their own levels, inside a grid by the inner ones.
 fn quad(outer: &[Cuts], inner: &[Cuts]) -> Vec<DVec3> {
     // Edge 0 is u = 0, then v = 0, u = 1, v = 1.

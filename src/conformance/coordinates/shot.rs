@@ -1,6 +1,5 @@
 //! What the tessellator makes of patches of given levels.
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec3, Vec3};
@@ -55,12 +54,11 @@ pub fn shoot_with(
     let sizes = [size_of_val(table) as u64, 4 + 16 * u64::from(room)];
     let mut raw = Raw::new(device, &sizes, SIDE)?;
     raw.write(0, table)?;
+    let evaluation = modes.rewrite(module("coordinates.tese")?);
     let pipeline = raw.pipeline(&Program {
-        control: Cow::Borrowed(module("coordinates.tesc")?),
-        evaluation: Cow::Owned(modes.rewrite(module("coordinates.tese")?)),
         control_points,
-        constant: 0,
         raster,
+        ..Program::new(module("coordinates.tesc")?, evaluation)?
     })?;
     let counts = device.info().support.optional.pipeline_statistics_query;
     let query = counts.then(|| StatisticsQuery::new(device)).transpose()?;

@@ -22,7 +22,9 @@ fn case(result: &CaseResult) -> TestCase {
     let status = match result.status {
         Status::Pass | Status::Warn | Status::ExpectedFail => TestCaseStatus::success(),
         Status::Skip => TestCaseStatus::skipped(),
-        Status::Crash | Status::Timeout => TestCaseStatus::non_success(NonSuccessKind::Error),
+        Status::Crash | Status::DeviceLost | Status::Timeout => {
+            TestCaseStatus::non_success(NonSuccessKind::Error)
+        }
         Status::Fail | Status::Flake | Status::UnexpectedImprovement => {
             TestCaseStatus::non_success(NonSuccessKind::Failure)
         }

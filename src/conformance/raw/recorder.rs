@@ -1,0 +1,214 @@
+//! Commands over the buffers and pipelines of [`Raw`].
+
+use ash::vk;
+
+use super::{Raw, STAGES};
+use crate::error::Result;
+use crate::gpu::failed;
+use crate::gpu::ring::cmd_ring_barrier;
+use crate::host::{Device, StorageSet};
+
+/// An event of a device.
+pub struct Event<'a> {
+    device: &'a Device,
+    raw: vk::Event,
+}
+
+impl<'a> Event<'a> {
+    /// One that is not set.
+    pub fn new(device: &'a Device) -> Result<Event<'a>> {
+        let info = vk::EventCreateInfo::default();
+        // SAFETY: the device is live.
+        let raw = unsafe { device.raw().create_event(&info, None) };
+        let raw = raw.map_err(failed("vkCreateEvent"))?;
+        Ok(Event { device, raw })
+    }
+}
+
+impl Drop for Event<'_> {
+    fn drop(&mut self) {
+        if !self.device.is_hung() {
+            // SAFETY: each submission was waited for.
+            unsafe { self.device.raw().destroy_event(self.raw, None) };
+        }
+    }
+}
+
+/// Stages, and accesses of theirs, on one side of a memory dependency.
+pub type Scope = (vk::PipelineStageFlags, vk::AccessFlags);
+
+fn memory_barrier(from: Scope, to: Scope) -> vk::MemoryBarrier<'static> {
+    vk::MemoryBarrier::default()
+        .src_access_mask(from.1)
+        .dst_access_mask(to.1)
+}
+
+/// Records draws inside of the render pass. Draws of one submission that write the same memory need a [`barrier`](Self::barrier) between
+/// them.
+pub struct Recorder<'a> {
+    pub(super) device: &'a ash::Device,
+    pub(super) raw: &'a Raw<'a>,
+    pub(super) cmd: vk::CommandBuffer,
+}
+
+impl Recorder<'_> {
+    /// Binds a pipeline with all buffers, and sets the push constants.
+    pub fn bind<T: bytemuck::NoUninit>(&self, pipeline: vk::Pipeline, constants: &T) {
+        self.bind_to(vk::PipelineBindPoint::GRAPHICS, pipeline, constants);
+    }
+
+    fn bind_to<T: bytemuck::NoUninit>(
+        &self,
+        point: vk::PipelineBindPoint,
+        pipeline: vk::Pipeline,
+        constants: &T,
+    ) {
+        let bytes = bytemuck::bytes_of(constants);
+        let layout = self.raw.layout;
+        let sets = self.raw.set.as_slice();
+        let sets: Vec<vk::DescriptorSet> = sets.iter().map(StorageSet::raw).collect();
+        // SAFETY: recording where the pipeline may be bound; all of one device.
+        unsafe {
+            let device = self.device;
+            device.cmd_bind_pipeline(self.cmd, point, pipeline);
+            device.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
+            device.cmd_push_constants(self.cmd, layout, STAGES, 0, bytes);
+        }
+    }
+
+    /// A draw without indices.
+    pub fn draw(&self, vertices: u32, instances: u32, first_vertex: u32, first_instance: u32) {
+        // SAFETY: a pipeline is bound; nothing is fetched but by the vertex's number.
+        unsafe {
+            self.device
+                .cmd_draw(self.cmd, vertices, instances, first_vertex, first_instance)
+        };
+    }
+
+    /// A draw with the 32-bit indices in a buffer.
+    pub fn draw_indexed(&self, binding: usize, indices: u32, instances: u32, offset: i32) {
+        self.bind_indices(binding, vk::IndexType::UINT32);
+        // SAFETY: a pipeline and indices are bound, and the caller's buffer holds so many.
+        unsafe {
+            self.device
+                .cmd_draw_indexed(self.cmd, indices, instances, 0, offset, 0)
+        };
+    }
+
+    /// A draw whose arguments are the first words of a buffer.
+    pub fn draw_indirect(&self, arguments: usize) {
+        let buffer = self.raw.buffer(arguments);
+        let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+        // SAFETY: a pipeline is bound; the host wrote the arguments before the submission.
+        unsafe {
+            self.device
+                .cmd_draw_indirect(self.cmd, buffer, 0, 1, stride)
+        };
+    }
+
+    /// A draw with indices whose arguments are the first words of a buffer.
+    pub fn draw_indexed_indirect(&self, binding: usize, arguments: usize) {
+        self.bind_indices(binding, vk::IndexType::UINT32);
+        let buffer = self.raw.buffer(arguments);
+        let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
+        // SAFETY: as above, and indices are bound.
+        unsafe {
+            self.device
+                .cmd_draw_indexed_indirect(self.cmd, buffer, 0, 1, stride)
+        };
+    }
+
+    /// Binds the indices in a buffer, for draws that do not do so themselves.
+    pub fn bind_indices(&self, binding: usize, kind: vk::IndexType) {
+        let buffer = self.raw.buffer(binding);
+        // SAFETY: the buffer was made to hold indices.
+        unsafe { self.device.cmd_bind_index_buffer(self.cmd, buffer, 0, kind) };
+    }
+
+    /// A draw with the indices that are bound.
+    pub fn draw_bound(&self, arguments: vk::DrawIndexedIndirectCommand) {
+        // SAFETY: a pipeline and indices are bound, and the caller's buffer holds so many.
+        unsafe {
+            self.device.cmd_draw_indexed(
+                self.cmd,
+                arguments.index_count,
+                arguments.instance_count,
+                arguments.first_index,
+                arguments.vertex_offset,
+                arguments.first_instance,
+            );
+        }
+    }
+
+    /// Draws whose arguments stand one behind the other in a buffer, from a byte on, with the indices that are bound or without. Several need
+    /// `multiDrawIndirect`.
+    pub fn draw_several(&self, indexed: bool, arguments: usize, from: u64, count: u32) {
+        let (device, buffer) = (self.device, self.raw.buffer(arguments));
+        // SAFETY: a pipeline is bound; the host wrote the arguments before the submission.
+        unsafe {
+            if indexed {
+                let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
+                device.cmd_draw_indexed_indirect(self.cmd, buffer, from, count, stride);
+            } else {
+                let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+                device.cmd_draw_indirect(self.cmd, buffer, from, count, stride);
+            }
+        }
+    }
+
+    /// Binds a compute pipeline with all buffers, and sets the push constants.
+    pub fn bind_compute<T: bytemuck::NoUninit>(&self, pipeline: vk::Pipeline, constants: &T) {
+        self.bind_to(vk::PipelineBindPoint::COMPUTE, pipeline, constants);
+    }
+
+    /// Runs so many groups of the compute shader, outside of a pass.
+    pub fn dispatch(&self, groups: u32) {
+        // SAFETY: a compute pipeline with its buffers is bound.
+        unsafe { self.device.cmd_dispatch(self.cmd, groups, 1, 1) };
+    }
+
+    /// A memory barrier, outside of a pass.
+    pub fn memory_barrier(&self, from: Scope, to: Scope) {
+        let barrier = [memory_barrier(from, to)];
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: recording outside of a pass; stages and accesses fit each other.
+        unsafe {
+            self.device
+                .cmd_pipeline_barrier(self.cmd, from.0, to.0, none, &barrier, &[], &[]);
+        }
+    }
+
+    /// A barrier for a buffer, outside of a pass.
+    pub fn buffer_barrier(&self, binding: usize, from: Scope, to: Scope) {
+        let barrier = [vk::BufferMemoryBarrier::default()
+            .src_access_mask(from.1)
+            .dst_access_mask(to.1)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .buffer(self.raw.buffer(binding))
+            .size(vk::WHOLE_SIZE)];
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: as above; the buffer is of this device.
+        unsafe {
+            self.device
+                .cmd_pipeline_barrier(self.cmd, from.0, to.0, none, &[], &barrier, &[]);
+        }
+    }
+
+    /// Sets an event behind a stage and waits for it, outside of a pass. Each event serves once.
+    pub fn event(&self, event: &Event<'_>, from: Scope, to: Scope) {
+        let barrier = [memory_barrier(from, to)];
+        // SAFETY: as above; the caller's event lives until the commands are done, and was not set before.
+        unsafe {
+            self.device.cmd_set_event(self.cmd, event.raw, from.0);
+            self.device
+                .cmd_wait_events(self.cmd, &[event.raw], from.0, to.0, &barrier, &[], &[]);
+        }
+    }
+
+    /// Lets the next draw use the memory of the one before.
+    pub fn barrier(&self) {
+        // SAFETY: inside of a pass that was made with the dependency for it.
+        unsafe { cmd_ring_barrier(self.device, self.cmd) };
+    }
+}

@@ -1,0 +1,234 @@
+//! Group `state`: draws of one submission with pipelines of other domains, spacings, patch sizes, or without patches.
+//!
+//! Each draw has a cell of the picture, and must leave there what it leaves when it is alone. A seeded fault compares with the next one's.
+
+use std::collections::BTreeMap;
+
+use crate::conformance::modes::{Domain, Modes, Spacing, module};
+use crate::conformance::random::Random;
+use crate::conformance::raw::{Program, Raw};
+use crate::conformance::{Case, Check, Context, Finding, Group};
+use crate::error::Result;
+
+/// The group.
+pub const GROUP: Group = Group {
+    name: "state",
+    about: "switches of pipelines between draws",
+    cases,
+    model_cases: None,
+};
+
+/// Push constants. Twin of `Draw` in `glsl/conformance/state.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+struct Constants {
+    number: u32,
+    columns: u32,
+    level: f32,
+}
+
+// As `tests/layout.rs` holds the shaders to.
+const _: () = assert!(size_of::<Constants>() == 4 * 3);
+
+/// A pipeline: patches of so many points, or triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum State {
+    Triangles,
+    Patches {
+        domain: usize,
+        spacing: usize,
+        points: u32,
+    },
+}
+
+impl State {
+    /// Every domain and spacing, and none.
+    fn all() -> Vec<State> {
+        let patches = (0..9).map(|number| State::Patches {
+            domain: number / 3,
+            spacing: number % 3,
+            points: 1,
+        });
+        patches.chain([State::Triangles]).collect()
+    }
+
+    fn name(self) -> String {
+        match self {
+            State::Triangles => "no_patches".into(),
+            State::Patches {
+                domain,
+                spacing,
+                points,
+            } => {
+                let (domain, spacing) = (Domain::ALL[domain].name(), Spacing::ALL[spacing].name());
+                match points {
+                    1 => format!("{domain}_{spacing}"),
+                    _ => format!("{domain}_{spacing}_{points}"),
+                }
+            }
+        }
+    }
+
+    fn points(self) -> u32 {
+        match self {
+            State::Triangles => 0,
+            State::Patches { points, .. } => points,
+        }
+    }
+
+    fn program(self) -> Result<Program> {
+        let State::Patches {
+            domain,
+            spacing,
+            points,
+        } = self
+        else {
+            let none: &'static [u32] = &[];
+            return Ok(Program {
+                vertex: module("state.vert")?,
+                tessellation: None,
+                constants: vec![0],
+                ..Program::new(none, none)?
+            });
+        };
+        let modes = Modes::new(Domain::ALL[domain], Spacing::ALL[spacing]);
+        let evaluation = modes.rewrite(module("state.tese")?);
+        Ok(Program {
+            vertex: module("state.vert")?,
+            control_points: points,
+            constants: vec![points],
+            ..Program::new(module("state.tesc")?, evaluation)?
+        })
+    }
+}
+
+/// The picture's side in pixels, and its cells in a row.
+const SIDE: u32 = 64;
+const COLUMNS: u32 = 4;
+const MOST: usize = (COLUMNS * COLUMNS) as usize;
+const LEVEL: f32 = 3.5;
+
+/// What draws leave: of each the runs of the last stage, the points of a patch, and the pixels of its cell that are drawn.
+type Left = Vec<[u32; 3]>;
+
+/// Draws some of the states, each by its place among all of them.
+fn draw(context: &Context, states: &[State], which: &[usize]) -> Result<Left> {
+    let mut raw = Raw::new(context.device()?, &[8 * MOST as u64], SIDE)?;
+    let mut pipelines = BTreeMap::new();
+    for &place in which {
+        let state = states[place];
+        if !pipelines.contains_key(&state) {
+            pipelines.insert(state, raw.pipeline(&state.program()?)?);
+        }
+    }
+    raw.submit(None, |cmd| {
+        for &place in which {
+            let state = states[place];
+            let constants = Constants {
+                number: place as u32,
+                columns: COLUMNS,
+                level: LEVEL,
+            };
+            cmd.barrier();
+            cmd.bind(pipelines[&state], &constants);
+            cmd.draw(
+                state.points().max(1) * if state.points() == 0 { 6 } else { 1 },
+                1,
+                0,
+                0,
+            );
+        }
+    })?;
+    let (counts, pixels) = (raw.words(0), raw.pixels());
+    context.saw(pixels.iter().filter(|&&pixel| pixel != 0).count() as u64);
+    let cell = SIDE / COLUMNS;
+    let drawn = |place: u32| {
+        let (x, y) = (place % COLUMNS * cell, place / COLUMNS * cell);
+        let own = (0..cell * cell).map(|i| pixels[((y + i / cell) * SIDE + x + i % cell) as usize]);
+        own.filter(|&pixel| pixel == place + 1).count() as u32
+    };
+    let places = 0..states.len();
+    Ok(places
+        .map(|place| {
+            [
+                counts[2 * place],
+                counts[2 * place + 1],
+                drawn(place as u32),
+            ]
+        })
+        .collect())
+}
+
+fn switches(context: &Context, states: &[State]) -> Result<Finding> {
+    let mut check = Check::default();
+    let all: Vec<usize> = (0..states.len()).collect();
+    let together = draw(context, states, &all)?;
+    for (place, state) in states.iter().enumerate() {
+        let alone = draw(context, states, &[place])?;
+        let shift = usize::from(context.is_wrong());
+        let [found, right] = [together[(place + shift) % states.len()], alone[place]];
+        // Shaders may run more often than once a vertex.
+        let same = found[0] >= right[0] && found[1..] == right[1..] && right[0] > 0;
+        let points = state.points() == right[1];
+        check.hold(same && points, || {
+            let name = state.name();
+            format!("draw {place}, {name}: runs, points and pixels are {found:?}, and {right:?} when it is alone")
+        });
+    }
+    let pixels: u32 = together.iter().map(|left| left[2]).sum();
+    Ok(check.finish(format!("{} draws, {pixels} pixels", states.len())))
+}
+
+const SOURCE: &str = "Vulkan, Pipelines, Binding; Fundamentals, Queue Operation: draws are independent of those before";
+
+fn case(name: String, states: Vec<State>) -> Case {
+    let rule =
+        "a draw leaves what it leaves when it is alone, whatever pipelines were bound before";
+    let name = format!("state.{name}");
+    Case::new(name, rule, SOURCE, move |context| {
+        switches(context, &states)
+    })
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let all = State::all();
+    for (i, &a) in all.iter().enumerate() {
+        // Both orders are in it.
+        for &b in &all[i + 1..] {
+            let name = format!("domains.{}-{}", a.name(), b.name());
+            cases.push(case(name, vec![a, b, a, b]));
+        }
+    }
+    let sizes = [1, 2, 3, 4, 16, 31, 32].map(|points| State::Patches {
+        domain: 1,
+        spacing: 0,
+        points,
+    });
+    for (i, &a) in sizes.iter().enumerate() {
+        for &b in &sizes[i + 1..] {
+            let name = format!("points.{}-{}", a.points(), b.points());
+            cases.push(case(name, vec![a, b, a, b]));
+        }
+        let name = format!("points.{}-none", a.points());
+        cases.push(case(name, vec![a, State::Triangles, a]));
+    }
+    for number in 0..20 {
+        let name = format!("mixed.{number}");
+        // Which states a case has is part of its name: the seed does not change it.
+        let mut random = Random::new(0, &name);
+        let state = |_| match *random.one_of(&all) {
+            State::Triangles => State::Triangles,
+            State::Patches {
+                domain, spacing, ..
+            } => State::Patches {
+                domain,
+                spacing,
+                points: 1 + random.below(32),
+            },
+        };
+        let states: Vec<State> = (0..12).map(state).collect();
+        cases.push(case(name, states));
+    }
+    cases
+}

@@ -56,6 +56,7 @@ pub struct Topology {
     face_offsets: Vec<u32>,
     face_vertices: Vec<u32>,
     face_edges: Vec<u32>,
+    only_quads: bool,
     edges: Vec<Edge>,
     edge_faces: Lists<u32>,
     vertex_faces: Lists<FaceCorner>,
@@ -113,18 +114,78 @@ impl Topology {
 
     /// Sharp corners and non-manifold places, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
     fn sharpen_non_manifold(&mut self) {
-        let manifold: Vec<bool> = (0..self.edges.len() as u32)
-            .map(|edge| self.is_manifold_edge(edge))
-            .collect();
+        let manifold = self.manifold_edges();
+        let mut at_others = vec![false; self.vertex_count()];
         for (edge, _) in self.edges.iter_mut().zip(&manifold).filter(|pair| !pair.1) {
             edge.sharpness = INFINITE_SHARPNESS;
+            for vertex in edge.vertices {
+                at_others[vertex as usize] = true;
+            }
         }
         for vertex in 0..self.vertex_count() as u32 {
-            if self.is_interpolated_corner(vertex) || self.is_non_manifold_corner(vertex, &manifold)
+            let is_manifold = !at_others[vertex as usize];
+            if self.is_interpolated_corner(vertex)
+                || !(is_manifold && self.is_plain_fan(vertex))
+                    && self.is_non_manifold_corner(vertex, &manifold)
             {
                 self.vertex_sharpness[vertex as usize] = INFINITE_SHARPNESS;
             }
         }
+    }
+
+    /// Whether each edge has at most two faces, and two walk it in opposite directions.
+    fn manifold_edges(&self) -> Vec<bool> {
+        // How often each is walked forwards, and in the upper half how often backwards.
+        let mut walks = vec![0u8; self.edges.len()];
+        for (&from, &edge) in self.face_vertices.iter().zip(&self.face_edges) {
+            let backwards = self.edges[edge as usize].vertices[0] != from;
+            let walks = &mut walks[edge as usize];
+            let seen = *walks >> (4 * u8::from(backwards)) & 15;
+            *walks += if seen < 2 {
+                1 << (4 * u8::from(backwards))
+            } else {
+                0
+            };
+        }
+        let is_manifold = |walks: u8| walks & 15 < 2 && walks >> 4 < 2;
+        walks.into_iter().map(is_manifold).collect()
+    }
+
+    /// Whether the faces around `vertex`, all of whose edges are manifold, hang together, as far as few faces tell at once.
+    fn is_plain_fan(&self, vertex: u32) -> bool {
+        let corners = self.vertex_faces.get(vertex);
+        let mut sides: SmallVec<[[u32; 2]; 8]> = SmallVec::new();
+        if corners.len() > sides.inline_size() {
+            return false;
+        }
+        for &FaceCorner { face, corner } in corners {
+            let edges = self.face_edges(face);
+            let before = if corner == 0 {
+                edges.len()
+            } else {
+                corner as usize
+            } - 1;
+            sides.push([edges[corner as usize], edges[before]]);
+        }
+        // From the face that no other leads to, or anywhere.
+        let Some(&[_, first]) = sides
+            .iter()
+            .find(|[_, before]| !sides.iter().any(|[next, _]| next == before))
+            .or(sides.first())
+        else {
+            return true;
+        };
+        let mut at = first;
+        for met in 0..sides.len() {
+            let Some(&[next, _]) = sides.iter().find(|[_, before]| *before == at) else {
+                return false;
+            };
+            at = next;
+            if at == first {
+                return met + 1 == sides.len();
+            }
+        }
+        true
     }
 
     /// Boundary edges are infinitely sharp, now and for ever.
@@ -151,17 +212,6 @@ impl Topology {
                     self.holes[corner.face as usize] = true;
                 }
             }
-        }
-    }
-
-    /// Whether an edge has at most two faces, and two walk it in opposite directions.
-    fn is_manifold_edge(&self, edge: u32) -> bool {
-        let [a, _] = self.edges[edge as usize].vertices;
-        let forward = |&face: &u32| self.edges_at(face, a)[0] == edge;
-        match self.edge_faces.get(edge) {
-            [] | [_] => true,
-            [first, second] => forward(first) != forward(second),
-            _ => false,
         }
     }
 
@@ -229,7 +279,14 @@ impl Topology {
 
     /// Computes each edge's sharpness at the next level.
     fn foresee(&mut self) {
-        for vertex in 0..self.vertex_count() as u32 {
+        let mut at_sharp = vec![false; self.vertex_count()];
+        for edge in self.edges.iter().filter(|edge| is_sharp(edge.sharpness)) {
+            for vertex in edge.vertices {
+                at_sharp[vertex as usize] = true;
+            }
+        }
+        let all = 0..self.vertex_count() as u32;
+        for vertex in all.filter(|&vertex| at_sharp[vertex as usize]) {
             let around = self.vertex_edges.get(vertex);
             let sharpness = around
                 .iter()
@@ -261,6 +318,16 @@ impl Topology {
     /// The vertices of a face.
     pub fn face(&self, face: u32) -> &[u32] {
         list(&self.face_offsets, &self.face_vertices, face)
+    }
+
+    /// The number, among the sides of all faces, of that which begins at a corner of a face.
+    pub(crate) fn side(&self, face: u32, corner: u32) -> u32 {
+        self.face_offsets[face as usize] + corner
+    }
+
+    /// The vertices of all faces one after another, if all are quads.
+    pub(crate) fn quads(&self) -> Option<&[u32]> {
+        self.only_quads.then_some(&self.face_vertices[..])
     }
 
     /// The edges of a face; edge i joins its vertices i and i + 1.

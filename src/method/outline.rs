@@ -1,7 +1,6 @@
 //! The edges and faces of the control mesh, to which the edges of patches belong: levels that go by them agree on both sides of each.
 
 use glam::{DVec3, Vec3};
-use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
@@ -128,12 +127,20 @@ fn sides(topology: &Topology, part: Part, patch: &abi::Patch) -> [u32; 4] {
     })
 }
 
-/// The sides of all patches of a pass.
-pub(super) fn sides_of(model: &Model, patches: &[abi::Patch]) -> Vec<[u32; 4]> {
-    let parts: FxHashMap<u32, Part> = patches::parts(model)
-        .into_iter()
-        .map(|part| (part.ptex, part))
-        .collect();
-    let side = |patch: &abi::Patch| sides(model.topology(), parts[&patch.ptex], patch);
-    patches.iter().map(side).collect()
+/// The sides of all patches of each pass.
+pub(super) fn sides_of<'a>(
+    model: &Model,
+    passes: impl Iterator<Item = &'a [abi::Patch]>,
+) -> Vec<Vec<[u32; 4]>> {
+    let parts = patches::parts(model);
+    let last = parts.last().map_or(0, |part| part.ptex as usize + 1);
+    let mut places = vec![0; last];
+    for (place, part) in (0u32..).zip(&parts) {
+        places[part.ptex as usize] = place;
+    }
+    let part = |patch: &abi::Patch| parts[places[patch.ptex as usize] as usize];
+    let side = |patch: &abi::Patch| sides(model.topology(), part(patch), patch);
+    passes
+        .map(|patches| patches.iter().map(side).collect())
+        .collect()
 }

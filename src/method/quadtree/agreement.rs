@@ -1,24 +1,24 @@
 //! Edges that the faces on both sides evaluate with points of their own plans, and get the same bits.
 //!
 //! A point has the same bits in both faces if it is a sum of the same weights over the same vertices in the same order, relative to the same vertex.
-//! Order and origin are the mesh's own (see `Irregular::order`, `Stencil::corner`); that the weights agree in every bit is looked up, edge by edge.
+//! Order and origin are the mesh's own (see `irregular.rs`, `Stencil::corner`); that the weights agree in every bit is looked up, edge by edge.
 //! Where they do not, or where one side has other cells than the other, the edge gets a plan of its own.
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
-use crate::abi;
 use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
-use crate::method::quadtree::irregular::Irregular;
-use crate::plan::{Plan, Stretch, Strip};
+use crate::method::quadtree::irregular::{Irregular, Irregulars};
+use crate::method::quadtree::plain::is_plain;
+use crate::plan::{Plan, SmoothQuads, Stretch, Strip};
 
 /// A patch's edge.
 #[derive(Clone, Copy)]
 struct Side<'a> {
     topology: &'a Topology,
-    patch: &'a Irregular,
+    patch: Irregular<'a>,
     plan: &'a Plan,
     /// The edge of the patch, 0..=3.
     edge: u32,
@@ -30,99 +30,109 @@ struct Side<'a> {
 /// at once.
 pub fn agreed_edges(
     topology: &Topology,
-    plain: &[bool],
-    patches: &[Irregular],
+    smooth: &SmoothQuads<'_>,
+    patches: &Irregulars<'_>,
     plans: &[&Plan],
 ) -> Vec<bool> {
-    let pairs = pairs(topology, plain, patches, plans);
+    let pairs = pairs(topology, smooth, patches);
+    let side = |number: u32| {
+        let patch = patches.get(number / 4);
+        Side {
+            topology,
+            patch,
+            plan: plans[patch.record.plan as usize],
+            edge: number % 4,
+        }
+    };
     let keys: Vec<Key> = pairs
         .par_iter()
-        .map(|[one, other]| one.key(*other))
+        .map(|&[one, other]| side(one).key(side(other)))
         .collect();
-    let mut known: FxHashMap<&Key, usize> = FxHashMap::default();
+    let mut known: FxHashMap<&Key, u32> = FxHashMap::default();
     let mut firsts = Vec::new();
     let number = |(pair, key)| {
         *known.entry(key).or_insert_with(|| {
             firsts.push(pair);
-            firsts.len() - 1
+            firsts.len() as u32 - 1
         })
     };
-    let numbers: Vec<usize> = pairs.iter().zip(&keys).map(number).collect();
+    let numbers: Vec<u32> = pairs.iter().zip(&keys).map(number).collect();
     let agree: Vec<bool> = firsts
         .par_iter()
-        .map(|[one, other]| one.agrees(*other))
+        .map(|&&[one, other]| side(one).agrees(side(other)))
         .collect();
     let mut agreed = vec![false; topology.edge_count()];
-    for ([side, _], number) in pairs.iter().zip(numbers) {
-        agreed[side.number() as usize] = agree[number];
+    for (&[one, _], number) in pairs.iter().zip(numbers) {
+        agreed[side(one).number() as usize] = agree[number as usize];
     }
     agreed
 }
 
-/// Plans, edges, and which vertices of one ring are which of the other.
-type Key = SmallVec<[u8; 64]>;
+/// What decides whether two sides agree.
+#[derive(PartialEq, Eq, Hash)]
+enum Key {
+    /// Their plans and edges alone: all is smooth, and no vertex met twice around either face.
+    Smooth([u32; 2]),
+    /// Plans, edges, and which vertices of one ring are which of the other.
+    Any(Box<[u8]>),
+}
 
-/// The two sides of each edge that quads with plans have on both, and that is neither plain nor infinitely sharp.
-fn pairs<'a>(
-    topology: &'a Topology,
-    plain: &[bool],
-    patches: &'a [Irregular],
-    plans: &[&'a Plan],
-) -> Vec<[Side<'a>; 2]> {
-    let mut sides: Vec<[Option<u32>; 2]> = vec![[None; 2]; topology.edge_count()];
-    // Sums over longer rings are compensated, and so depend on the weights that are zero.
-    let short = |(_, patch): &(u32, &Irregular)| {
-        patch.ring.vertices.len() <= abi::CONTROL_INVOCATIONS as usize
-            && topology.face(patch.part.face).len() == 4
-    };
-    for (number, patch) in (0..).zip(patches).filter(short) {
-        let edges = topology.face_edges(patch.part.face);
+/// The two sides of each edge that quads with plans have on both, and that is neither plain nor infinitely sharp; each a number, 4 times the patch and its
+/// edge.
+fn pairs(topology: &Topology, smooth: &SmoothQuads<'_>, patches: &Irregulars<'_>) -> Vec<[u32; 2]> {
+    const NONE: u32 = u32::MAX;
+    let mut sides = vec![[NONE; 2]; topology.edge_count()];
+    for (number, patch) in (0..).zip(patches.iter()) {
+        let edges = topology.face_edges(patch.record.part.face);
+        // Sums over longer rings are compensated, and so depend on the weights that are zero.
+        if !patch.is_short() || edges.len() != 4 {
+            continue;
+        }
         for edge in 0..4 {
             let at = edges[((patch.turn(topology) + edge) % 4) as usize];
             let [first, second] = &mut sides[at as usize];
-            let free = if first.is_none() { first } else { second };
-            *free = Some(4 * number + edge);
+            let free = if *first == NONE { first } else { second };
+            *free = 4 * number + edge;
         }
     }
-    let side = |number: u32| {
-        let patch = &patches[number as usize / 4];
-        Side {
-            topology,
-            patch,
-            plan: plans[patch.plan as usize],
-            edge: number % 4,
-        }
+    let is_wanted = |(edge, sides): &(u32, [u32; 2])| {
+        let own = topology.edge(*edge);
+        let is_plain = || own.vertices.iter().all(|&vertex| is_plain(smooth, vertex));
+        sides[1] != NONE
+            && topology.edge_faces(*edge).len() == 2
+            && !is_infinite(own.sharpness)
+            && !is_plain()
     };
-    let pair = |(edge, sides): (u32, &[Option<u32>; 2])| {
-        let [Some(one), Some(other)] = *sides else {
-            return None;
-        };
-        let own = topology.edge(edge);
-        let is_plain = own.vertices.iter().all(|&vertex| plain[vertex as usize]);
-        let shared = topology.edge_faces(edge).len() == 2 && !is_infinite(own.sharpness);
-        (shared && !is_plain).then(|| [side(one), side(other)])
-    };
-    (0..).zip(&sides).filter_map(pair).collect()
+    let all = (0..).zip(sides);
+    all.filter(is_wanted).map(|(_, sides)| sides).collect()
 }
 
 impl Side<'_> {
     /// The edge of the mesh.
     fn number(self) -> u32 {
         let corner = (self.patch.turn(self.topology) + self.edge) % 4;
-        self.topology.face_edges(self.patch.part.face)[corner as usize]
+        self.topology.face_edges(self.patch.record.part.face)[corner as usize]
     }
 
     fn key(self, other: Side<'_>) -> Key {
-        let mut key = Key::new();
-        for side in [self, other] {
-            let flags = u8::from(side.patch.ring.mirrored) | u8::from(side.is_flipped()) << 1;
-            key.extend(side.patch.plan.to_le_bytes());
-            key.push(side.edge as u8 | flags << 2);
+        let words = [self, other].map(|side| {
+            let flags = u32::from(side.patch.record.mirrored) | u32::from(side.is_flipped()) << 1;
+            side.edge | flags << 2 | side.patch.record.plan << 4
+        });
+        if self.is_smooth_with(other) {
+            return Key::Smooth(words);
         }
         // Short rings alone: a byte holds a place.
         let place = |&vertex: &u32| other.patch.place(vertex).map_or(u8::MAX, |at| at as u8);
-        key.extend(self.patch.ring.vertices.iter().map(place));
-        key
+        let mut key: SmallVec<[u8; 64]> = SmallVec::new();
+        words.iter().for_each(|word| key.extend(word.to_le_bytes()));
+        key.extend(self.patch.vertices.iter().map(place));
+        Key::Any(key.as_slice().into())
+    }
+
+    /// Whether both faces and all around them are smooth, see [`Key::Smooth`].
+    fn is_smooth_with(self, other: Side<'_>) -> bool {
+        self.patch.record.is_smooth && other.patch.record.is_smooth
     }
 
     fn is_flipped(self) -> bool {
@@ -143,15 +153,31 @@ impl Side<'_> {
         let (Some(one), Some(two)) = (self.strip(), other.strip()) else {
             return false;
         };
+        let shared = self.is_smooth_with(other).then(|| self.shared());
+        let shared = shared.as_deref();
         self.is_flipped() != other.is_flipped()
             && one.stretches().count() == two.stretches().count()
             && one
                 .stretches()
                 .zip(two.stretches())
-                .all(|(one, two)| self.has_same(one, other, two))
+                .all(|(one, two)| self.has_same(one, other, two, shared))
     }
 
-    fn has_same(self, own: &Stretch, other: Side<'_>, others: &Stretch) -> bool {
+    /// The vertices around the edge. Around smooth faces others may be the same in some pairs of faces and not in others, and must not count.
+    fn shared(self) -> Vec<u32> {
+        let ends = self.topology.edge(self.number()).vertices;
+        let faces = ends.iter().flat_map(|&end| self.topology.vertex_faces(end));
+        let vertices = faces.flat_map(|at| self.topology.face(at.face));
+        vertices.copied().collect()
+    }
+
+    fn has_same(
+        self,
+        own: &Stretch,
+        other: Side<'_>,
+        others: &Stretch,
+        shared: Option<&[u32]>,
+    ) -> bool {
         if (own.depth, own.at, own.crease) != (others.depth, others.at, others.crease) {
             return false;
         }
@@ -162,9 +188,12 @@ impl Side<'_> {
             .iter()
             .flatten()
             .zip(other_points.iter().flatten());
+        let is_shared = |vertex: u32| shared.is_none_or(|shared| shared.contains(&vertex));
         let mut pairs = points.chain([(&own.base, &others.base)]);
         pairs.all(|(&own, &others)| {
-            self.origin(own) == other.origin(others) && self.terms(own).eq(other.terms(others))
+            self.origin(own) == other.origin(others)
+                && self.terms(own).eq(other.terms(others))
+                && self.terms(own).all(|(vertex, _)| is_shared(vertex))
         })
     }
 
@@ -172,14 +201,14 @@ impl Side<'_> {
     fn origin(self, point: u32) -> Option<u32> {
         let corner = self.plan.stencils[point as usize].corner?;
         let corner = (self.patch.turn(self.topology) + self.patch.corner(corner)) % 4;
-        Some(self.topology.face(self.patch.part.face)[corner as usize])
+        Some(self.topology.face(self.patch.record.part.face)[corner as usize])
     }
 
     /// What a point is a sum of, in the order in which it is added.
     fn terms(&self, point: u32) -> impl Iterator<Item = (u32, u32)> {
         let weights = &self.plan.stencils[point as usize].weights;
-        let vertices = &self.patch.ring.vertices;
-        self.patch.order.iter().filter_map(move |&place| {
+        let vertices = self.patch.vertices;
+        self.patch.order().filter_map(move |place| {
             let weight = weights[place as usize] as f32;
             (weight != 0.0).then(|| (vertices[place as usize], weight.to_bits()))
         })

@@ -8,13 +8,16 @@ mod connect;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use smallvec::SmallVec;
 
 use crate::mesh::control_mesh::creased_edges;
+use crate::mesh::faces::Faces;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
-use connect::{Lists, list};
+use connect::Lists;
 
 /// An edge and how sharp it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,10 +56,8 @@ pub struct FaceCorner {
 /// What is asked of a number that no face, edge or vertex has is answered as of one that touches nothing: by an empty list, no sharpness, no hole.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    face_offsets: Vec<u32>,
-    face_vertices: Vec<u32>,
+    faces: Arc<Faces>,
     face_edges: Vec<u32>,
-    only_quads: bool,
     edges: Vec<Edge>,
     edge_faces: Lists<u32>,
     vertex_faces: Lists<FaceCorner>,
@@ -83,11 +84,16 @@ impl Topology {
         for corner in mesh.corners() {
             vertex_sharpness[corner.vertex as usize] = clamp(corner.sharpness);
         }
-        let mut topology = Topology::connect(mesh.faces(), vertex_sharpness, options, |a, b| {
-            let crease = creased.crease([a, b]);
-            let sharpness = crease.map_or(0.0, |crease| mesh.creases()[crease].sharpness);
-            (clamp(sharpness), [0.0; 2])
-        });
+        let mut topology = Topology::of_faces(
+            mesh.shared_faces().clone(),
+            vertex_sharpness,
+            options,
+            |a, b| {
+                let crease = creased.crease([a, b]);
+                let sharpness = crease.map_or(0.0, |crease| mesh.creases()[crease].sharpness);
+                (clamp(sharpness), [0.0; 2])
+            },
+        );
         for &hole in mesh.holes() {
             topology.holes[hole as usize] = true;
         }
@@ -137,7 +143,7 @@ impl Topology {
     fn manifold_edges(&self) -> Vec<bool> {
         // How often each is walked forwards, and in the upper half how often backwards.
         let mut walks = vec![0u8; self.edges.len()];
-        for (&from, &edge) in self.face_vertices.iter().zip(&self.face_edges) {
+        for (&from, &edge) in self.faces.vertices().iter().zip(&self.face_edges) {
             let backwards = self.edges[edge as usize].vertices[0] != from;
             let walks = &mut walks[edge as usize];
             let seen = *walks >> (4 * u8::from(backwards)) & 15;
@@ -302,7 +308,7 @@ impl Topology {
 
     /// The number of faces.
     pub fn face_count(&self) -> usize {
-        self.face_offsets.len().saturating_sub(1)
+        self.faces.len()
     }
 
     /// The number of vertices.
@@ -317,22 +323,27 @@ impl Topology {
 
     /// The vertices of a face.
     pub fn face(&self, face: u32) -> &[u32] {
-        list(&self.face_offsets, &self.face_vertices, face)
+        self.faces.get(face as usize)
+    }
+
+    /// The faces, for those who keep them.
+    pub(crate) fn shared_faces(&self) -> &Arc<Faces> {
+        &self.faces
     }
 
     /// The number, among the sides of all faces, of that which begins at a corner of a face.
     pub(crate) fn side(&self, face: u32, corner: u32) -> u32 {
-        self.face_offsets[face as usize] + corner
+        self.faces.range(face as usize).start as u32 + corner
     }
 
     /// The vertices of all faces one after another, if all are quads.
     pub(crate) fn quads(&self) -> Option<&[u32]> {
-        self.only_quads.then_some(&self.face_vertices[..])
+        self.faces.quads()
     }
 
     /// The edges of a face; edge i joins its vertices i and i + 1.
     pub fn face_edges(&self, face: u32) -> &[u32] {
-        list(&self.face_offsets, &self.face_edges, face)
+        &self.face_edges[self.faces.range(face as usize)]
     }
 
     /// The edges by number.

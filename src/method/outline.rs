@@ -1,10 +1,13 @@
 //! The edges and faces of the control mesh, to which the edges of patches belong: levels that go by them agree on both sides of each.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::mesh::Model;
+use crate::mesh::faces::Faces;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
 use crate::method::ptex::{Child, child};
@@ -15,9 +18,7 @@ use crate::method::ptex::{Child, child};
 pub struct Outline {
     /// The control vertices of each edge.
     edges: Vec<[u32; 2]>,
-    /// The vertices of each face in turn, and of all faces one after the other.
-    face_vertices: Vec<u32>,
-    face_ends: Vec<usize>,
+    faces: Arc<Faces>,
     vertices: usize,
 }
 
@@ -25,16 +26,11 @@ impl Outline {
     /// The outline of a control mesh.
     pub(super) fn new(topology: &Topology) -> Outline {
         let ends = |edge| topology.edge(edge).vertices;
-        let mut outline = Outline {
+        Outline {
             edges: (0..topology.edge_count() as u32).map(ends).collect(),
+            faces: topology.shared_faces().clone(),
             vertices: topology.vertex_count(),
-            ..Outline::default()
-        };
-        for face in 0..topology.face_count() as u32 {
-            outline.face_vertices.extend_from_slice(topology.face(face));
-            outline.face_ends.push(outline.face_vertices.len());
         }
-        outline
     }
 
     /// The depth of each side, by one a control vertex: of an edge the greater of its ends', of a face the greatest of its edges'.
@@ -48,7 +44,7 @@ impl Outline {
             tags.fold(0.0, f32::max)
         };
         let edges = self.edges.iter().map(|ends| greatest(ends));
-        Ok(edges.chain(self.faces().map(greatest)).collect())
+        Ok(edges.chain(self.faces.iter().map(greatest)).collect())
     }
 
     /// Refuses lists that have not one entry a control vertex.
@@ -69,21 +65,11 @@ impl Outline {
         &self.edges
     }
 
-    /// The vertices of each face.
-    fn faces(&self) -> impl Iterator<Item = &[u32]> {
-        let mut start = 0;
-        self.face_ends.iter().map(move |&end| {
-            let face = &self.face_vertices[start..end];
-            start = end;
-            face
-        })
-    }
-
     /// Unit normals of the vertices: of the faces around each, by their areas.
     pub(super) fn normals(&self, vertices: &[Vec3]) -> Vec<Vec3> {
         // In f64 products of floats stay within its range.
         let mut normals = vec![DVec3::ZERO; vertices.len()];
-        for face in self.faces() {
+        for face in self.faces.iter() {
             let at = |i: usize| vertices[face[i % face.len()] as usize].as_dvec3();
             // Twice the area as a vector, whatever the polygon (Newell).
             let area = (0..face.len()).fold(DVec3::ZERO, |sum, i| {

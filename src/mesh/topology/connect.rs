@@ -1,9 +1,12 @@
 //! From faces to who touches whom.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::mesh::SchemeOptions;
+use crate::mesh::faces::Faces;
 use crate::mesh::topology::{Edge, FaceCorner, Topology};
 
 /// Lists of different lengths, one after another.
@@ -39,15 +42,10 @@ impl<T: Copy + Default> Lists<T> {
 
     /// The list with number `number`; empty where there is none.
     pub fn get(&self, number: u32) -> &[T] {
-        list(&self.offsets, &self.items, number)
-    }
-}
-
-/// One of the lists that stand one after another in `items`, each from its offset to the next; empty where there is none of that number.
-pub(super) fn list<'a, T>(offsets: &[u32], items: &'a [T], number: u32) -> &'a [T] {
-    match offsets.get(number as usize..) {
-        Some(&[start, end, ..]) => &items[start as usize..end as usize],
-        _ => &[],
+        match self.offsets.get(number as usize..) {
+            Some(&[start, end, ..]) => &self.items[start as usize..end as usize],
+            _ => &[],
+        }
     }
 }
 
@@ -59,7 +57,18 @@ impl Topology {
         options: SchemeOptions,
         edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
     ) -> Topology {
-        let mut topology = Topology::of_faces(faces, vertex_sharpness, options);
+        let faces = Faces::collect(faces).into();
+        Topology::of_faces(faces, vertex_sharpness, options, edge)
+    }
+
+    /// The same of faces that are shared.
+    pub(super) fn of_faces(
+        faces: Arc<Faces>,
+        vertex_sharpness: Vec<f32>,
+        options: SchemeOptions,
+        edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
+    ) -> Topology {
+        let mut topology = Topology::apart(faces, vertex_sharpness, options);
         let first = topology.first_alike();
         topology.join(&first, |_, a, b| edge(a, b));
         topology
@@ -74,7 +83,8 @@ impl Topology {
         options: SchemeOptions,
         edge: impl Fn(u32, u32, u32) -> (f32, [f32; 2]),
     ) -> Topology {
-        let mut topology = Topology::of_faces(faces, vertex_sharpness, options);
+        let faces = Faces::collect(faces).into();
+        let mut topology = Topology::apart(faces, vertex_sharpness, options);
         let mut first_of = FxHashMap::default();
         let first: Vec<u32> = (0..)
             .zip(keys)
@@ -85,29 +95,16 @@ impl Topology {
     }
 
     /// Faces that know their vertices, and vertices that know their faces.
-    fn of_faces<'a>(
-        faces: impl Iterator<Item = &'a [u32]> + Clone,
-        vertex_sharpness: Vec<f32>,
-        options: SchemeOptions,
-    ) -> Topology {
-        let corners = faces.clone().map(<[u32]>::len).sum();
+    fn apart(faces: Arc<Faces>, vertex_sharpness: Vec<f32>, options: SchemeOptions) -> Topology {
         let mut topology = Topology {
-            face_offsets: Vec::with_capacity(faces.size_hint().0 + 1),
-            face_vertices: Vec::with_capacity(corners),
+            holes: vec![false; faces.len()],
+            faces,
             vertex_sharpness,
             options,
             ..Default::default()
         };
-        topology.face_offsets.push(0);
-        topology.only_quads = true;
-        for face in faces {
-            topology.only_quads &= face.len() == 4;
-            topology.face_vertices.extend_from_slice(face);
-            let end = topology.face_vertices.len() as u32;
-            topology.face_offsets.push(end);
-        }
-        topology.holes = vec![false; topology.face_count()];
-        let at_vertices = topology.face_vertices.iter().copied();
+        let corners = topology.faces.vertices().len();
+        let at_vertices = topology.faces.vertices().iter().copied();
         let mut vertex_faces = Lists::with_room(topology.vertex_count(), corners, at_vertices);
         for face in 0..topology.face_count() as u32 {
             for (corner, &vertex) in (0..).zip(topology.face(face)) {
@@ -127,7 +124,7 @@ impl Topology {
 
     /// For each side of a face, the first side that joins the same two vertices; linear in their number, however many meet in a vertex.
     fn first_alike(&self) -> Vec<u32> {
-        let mut first: Vec<u32> = (0..self.face_vertices.len() as u32).collect();
+        let mut first: Vec<u32> = (0..self.faces.vertices().len() as u32).collect();
         let mut met: SmallVec<[(u32, u32); 2 * FEW]> = SmallVec::new();
         let mut many = Vec::new();
         for vertex in 0..self.vertex_count() as u32 {
@@ -137,7 +134,7 @@ impl Topology {
             }
             met.clear();
             for &FaceCorner { face, corner } in corners {
-                let start = self.face_offsets[face as usize];
+                let start = self.side(face, 0);
                 let vertices = self.face(face);
                 let before = if corner == 0 {
                     vertices.len() as u32
@@ -212,7 +209,7 @@ impl Topology {
         let at_edges = face_edges.iter().copied();
         let mut edge_faces = Lists::with_room(count, face_edges.len(), at_edges);
         for face in 0..self.face_count() as u32 {
-            for &edge in list(&self.face_offsets, &face_edges, face) {
+            for &edge in &face_edges[self.faces.range(face as usize)] {
                 edge_faces.push(edge, face);
             }
         }

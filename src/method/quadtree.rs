@@ -111,7 +111,16 @@ enum Surroundings {
 }
 
 /// So many parts are on their way at a time.
-const AT_A_TIME: usize = 1 << 14;
+const AT_A_TIME: usize = 1 << 13;
+/// Most short rings and their orders take less.
+const RING: usize = 36;
+
+/// Makes room for patches of so many control vertices.
+fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
+    pass.patches.reserve_exact(patches);
+    pass.texture.reserve_exact(patches);
+    pass.controls.reserve_exact(patches * controls);
+}
 
 fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result<Prepared> {
     let options = options.plans.check()?;
@@ -120,12 +129,16 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     let mut regular = pass("quadtree_regular", 16, twin::regular, options);
     let [mut short, mut long] =
         ["quadtree", "quadtree_long"].map(|shader| Planning::new(shader, options));
-    for parts in patches::parts(model).chunks(AT_A_TIME) {
-        let found: Vec<Found> = parts
-            .par_iter()
-            .map(|&part| found(model, &smooth, part))
-            .collect();
-        for (&part, found) in parts.iter().zip(found) {
+    let parts = patches::parts(model);
+    let is_regular = |part: &&Part| smooth.is_regular(part.face);
+    let regular_count = parts.iter().filter(is_regular).count();
+    reserve(&mut regular, regular_count, 16);
+    reserve(&mut short.pass, parts.len() - regular_count, RING);
+    let mut all = Vec::with_capacity(AT_A_TIME.min(parts.len()));
+    for parts in parts.chunks(AT_A_TIME) {
+        let found = parts.par_iter().map(|&part| found(model, &smooth, part));
+        found.collect_into_vec(&mut all);
+        for (&part, found) in parts.iter().zip(all.drain(..)) {
             let Found {
                 mut patch,
                 texture,
@@ -149,6 +162,7 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
             planning.add(model.topology(), part, patch, texture, surroundings);
         }
     }
+    drop((parts, all));
     let mut plans = PlanStatistics {
         regular: regular.patches.len(),
         vertex_bytes: size_of::<Vec3>() * model.mesh().vertex_count(),
@@ -299,6 +313,9 @@ fn irregular(
         ..
     } = planning;
     pass.cached = Some("quadtree_cached");
+    pass.patches.shrink_to_fit();
+    pass.texture.shrink_to_fit();
+    pass.controls.shrink_to_fit();
     let mut configurations: Vec<(Configuration, u32)> = numbers.into_iter().collect();
     configurations.sort_unstable_by_key(|&(_, number)| number);
     let kinds = configurations.iter().map(|(all, _)| (Kind::Inside, all));

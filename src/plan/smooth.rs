@@ -102,12 +102,17 @@ impl<'a> SmoothQuads<'a> {
         (!valences.contains(&0)).then_some(valences)
     }
 
+    /// Whether a face is a B-spline of its control vertices.
+    pub fn is_regular(&self, face: u32) -> bool {
+        self.corners(face) == Some([4; 4])
+    }
+
     /// The sixteen control vertices of a face that is a B-spline, number x + 4 y. None of others.
     pub fn regular(&self, face: u32) -> Option<[u32; 16]> {
         /// Where a corner's vertex stands, and those beyond: along the face's edge, across the vertex, beside the other edge.
         const PLACES: [[usize; 4]; 4] =
             [[5, 4, 0, 1], [6, 2, 3, 7], [10, 11, 15, 14], [9, 13, 12, 8]];
-        if self.corners(face) != Some([4; 4]) {
+        if !self.is_regular(face) {
             return None;
         }
         let mut points = [0; 16];

@@ -4,6 +4,7 @@ use crate::db::database;
 use crate::options::{self, Global};
 use crate::{model, print, print_json, progress};
 use clap::Args;
+use hullform::abi::Patch;
 use hullform::mesh::{ControlMesh, Model, replicated};
 use hullform::method::{Prepared, method};
 use hullform::plan::{PlanOptions, Ring};
@@ -87,7 +88,13 @@ fn as_text(facts: &Map<String, Value>) -> String {
 fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
     let offsets = model.mesh().ptex_offsets();
     let planned = prepared.passes.iter().filter(|pass| pass.cached.is_some());
-    let rings = planned.flat_map(|pass| &pass.patches).filter_map(|patch| {
+    // Patches of one plan, turned and mirrored alike, are alike.
+    let alike = planned.flat_map(|pass| {
+        let mut seen = HashSet::new();
+        let is_new = move |patch: &&Patch| seen.insert((patch.plan, patch.flags));
+        pass.patches.iter().filter(is_new)
+    });
+    let rings = alike.filter_map(|patch| {
         let face = offsets.partition_point(|&first| first <= patch.ptex) - 1;
         Ring::from_corner(model.topology(), face as u32, patch.ptex - offsets[face])
     });

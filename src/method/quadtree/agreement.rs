@@ -44,19 +44,21 @@ pub fn agreed_edges(
             edge: number % 4,
         }
     };
-    let keys: Vec<Key> = pairs
-        .par_iter()
-        .map(|&[one, other]| side(one).key(side(other)))
-        .collect();
-    let mut known: FxHashMap<&Key, u32> = FxHashMap::default();
+    let mut known: FxHashMap<Key, u32> = FxHashMap::default();
     let mut firsts = Vec::new();
-    let number = |(pair, key)| {
-        *known.entry(key).or_insert_with(|| {
-            firsts.push(pair);
-            firsts.len() as u32 - 1
-        })
-    };
-    let numbers: Vec<u32> = pairs.iter().zip(&keys).map(number).collect();
+    let mut numbers: Vec<u32> = Vec::with_capacity(pairs.len());
+    let mut keys = Vec::new();
+    for pairs in pairs.chunks(AT_A_TIME) {
+        let found = pairs.par_iter();
+        let found = found.map(|&[one, other]| side(one).key(side(other)));
+        found.collect_into_vec(&mut keys);
+        for (pair, key) in pairs.iter().zip(keys.drain(..)) {
+            numbers.push(*known.entry(key).or_insert_with(|| {
+                firsts.push(pair);
+                firsts.len() as u32 - 1
+            }));
+        }
+    }
     let agree: Vec<bool> = firsts
         .par_iter()
         .map(|&&[one, other]| side(one).agrees(side(other)))
@@ -81,31 +83,41 @@ enum Key {
 /// edge.
 fn pairs(topology: &Topology, smooth: &SmoothQuads<'_>, patches: &Irregulars<'_>) -> Vec<[u32; 2]> {
     const NONE: u32 = u32::MAX;
-    let mut sides = vec![[NONE; 2]; topology.edge_count()];
+    let mut of_faces = vec![NONE; topology.face_count()];
+    let mut pairs = Vec::new();
     for (number, patch) in (0..).zip(patches.iter()) {
-        let edges = topology.face_edges(patch.record.part.face);
+        let face = patch.record.part.face;
+        let edges = topology.face_edges(face);
         // Sums over longer rings are compensated, and so depend on the weights that are zero.
         if !patch.is_short() || edges.len() != 4 {
             continue;
         }
+        of_faces[face as usize] = number;
+        let turn = patch.turn(topology);
         for edge in 0..4 {
-            let at = edges[((patch.turn(topology) + edge) % 4) as usize];
-            let [first, second] = &mut sides[at as usize];
-            let free = if *first == NONE { first } else { second };
-            *free = 4 * number + edge;
+            let at = edges[((turn + edge) % 4) as usize];
+            let &[one, two] = topology.edge_faces(at) else {
+                continue;
+            };
+            let beyond = if one == face { two } else { one };
+            let other = of_faces[beyond as usize];
+            let own = topology.edge(at);
+            let is_plain = || own.vertices.iter().all(|&vertex| is_plain(smooth, vertex));
+            if other == NONE || beyond == face || is_infinite(own.sharpness) || is_plain() {
+                continue;
+            }
+            let edges = topology.face_edges(beyond).iter();
+            let corner = edges.into_iter().position(|&edge| edge == at);
+            let corner = corner.expect("a face on the edge has it") as u32;
+            let turn = patches.get(other).turn(topology);
+            pairs.push([4 * other + (corner + 4 - turn) % 4, 4 * number + edge]);
         }
     }
-    let is_wanted = |(edge, sides): &(u32, [u32; 2])| {
-        let own = topology.edge(*edge);
-        let is_plain = || own.vertices.iter().all(|&vertex| is_plain(smooth, vertex));
-        sides[1] != NONE
-            && topology.edge_faces(*edge).len() == 2
-            && !is_infinite(own.sharpness)
-            && !is_plain()
-    };
-    let all = (0..).zip(sides);
-    all.filter(is_wanted).map(|(_, sides)| sides).collect()
+    pairs
 }
+
+/// So many pairs are looked at between two looks at what is known.
+const AT_A_TIME: usize = 1 << 13;
 
 impl Side<'_> {
     /// The edge of the mesh.

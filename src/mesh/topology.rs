@@ -494,6 +494,27 @@ impl Topology {
         }
     }
 
+    /// Writes down all that tells it from other topologies under the same scheme and boundary rule.
+    pub(crate) fn write_down(&self, words: &mut Vec<u32>) {
+        let options = self.options;
+        words.extend([options.creasing as u32, options.triangles as u32]);
+        words.extend([self.face_count() as u32, self.vertex_count() as u32]);
+        if self.quads().is_none() {
+            words.extend(self.faces.iter().map(|face| face.len() as u32));
+        }
+        words.extend_from_slice(self.faces.vertices());
+        let sharp = |(number, sharpness): (u32, &f32)| [number, sharpness.to_bits()];
+        let vertices = (0..).zip(&self.vertex_sharpness);
+        let vertices = vertices.filter(|vertex| is_sharp(*vertex.1));
+        words.extend(vertices.flat_map(sharp));
+        for (number, edge) in (0..).zip(&self.edges) {
+            if is_sharp(edge.sharpness) || edge.next != [0.0; 2] {
+                let [near, far] = edge.next.map(f32::to_bits);
+                words.extend([u32::MAX, number, edge.sharpness.to_bits(), near, far]);
+            }
+        }
+    }
+
     /// How many sharp edges meet in `vertex`.
     pub fn sharp_edges(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         self.vertex_edges

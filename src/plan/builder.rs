@@ -6,13 +6,13 @@ use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Level;
+use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
 use crate::plan::strip::{self, Stretch, Strip};
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, is_plain_edge, limit_stencil};
+use crate::subdivision::{BsplinePatch, ControlPoint, is_plain_edge, limit_stencil};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -89,9 +89,17 @@ impl Plan {
     /// # Errors
     /// As [`PlanOptions::check`]; [`Misuse::Ring`](crate::Misuse::Ring) for the configuration of an edge or vertex.
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Result<Plan> {
+        Plan::build_by(configuration, options, &Steps::default())
+    }
+
+    pub(super) fn build_by(
+        configuration: &Configuration,
+        options: PlanOptions,
+        steps: &Steps,
+    ) -> Result<Plan> {
         let options = options.check()?;
         configuration.check_corners(configuration.arity())?;
-        let base = Level::base(configuration);
+        let base = Level::base(configuration, steps);
         let nearby = nearby::tangents(configuration, &base);
         let bases = Bases::new(4);
         let mut builder = Builder {
@@ -163,7 +171,7 @@ fn shared_edges(topology: &Topology, configuration: &Configuration) -> Vec<u32> 
 }
 
 /// The weights of a corner's limit.
-fn limit_row(base: &Level, corner: u32) -> Vec<f64> {
+fn limit_row(base: &Level<'_>, corner: u32) -> Vec<f64> {
     let mut level = base.clone();
     loop {
         if let Some(limit) = limit_stencil(&level.topology, 0, corner) {
@@ -192,8 +200,9 @@ enum Grown {
 }
 
 /// A cell that needs no children.
-enum Leaf {
-    Spline(Box<BsplinePatch>),
+#[derive(Clone, Copy)]
+enum Leaf<'a> {
+    Spline(&'a BsplinePatch),
     Extraordinary(u32),
 }
 
@@ -226,7 +235,7 @@ pub(super) const DEEPEST: u32 = 11;
 
 impl Builder {
     /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
-    fn grow(&mut self, base: &Level) -> Tree {
+    fn grow(&mut self, base: &Level<'_>) -> Tree {
         let mut grown: Vec<Vec<Grown>> = Vec::new();
         let mut cells = vec![Cell {
             corner: None,
@@ -235,7 +244,7 @@ impl Builder {
         let mut level = base.clone();
         for depth in 0.. {
             self.numbers.clear();
-            let leaves: Vec<Option<Leaf>> = (0..)
+            let leaves: Vec<Option<Leaf<'_>>> = (0..)
                 .zip(&cells)
                 .map(|(number, cell)| self.leaf(&level, number, cell.corner, depth))
                 .collect();
@@ -268,13 +277,17 @@ impl Builder {
     }
 
     /// The cell as a leaf, or None when it must be refined.
-    fn leaf(&self, level: &Level, number: u32, corner: Option<u32>, depth: u32) -> Option<Leaf> {
+    fn leaf<'a>(
+        &self,
+        level: &'a Level<'_>,
+        number: u32,
+        corner: Option<u32>,
+        depth: u32,
+    ) -> Option<Leaf<'a>> {
         let last = depth >= self.options.max_level.max(SHALLOWEST);
         let direct = self.options.direct_creases || last;
-        match (bspline_patch(&level.topology, number), corner) {
-            (Some(patch), _) if patch.crease.is_none() || direct => {
-                Some(Leaf::Spline(Box::new(patch)))
-            }
+        match (level.patch(number), corner) {
+            (Some(patch), _) if patch.crease.is_none() || direct => Some(Leaf::Spline(patch)),
             (_, Some(corner)) if last => Some(Leaf::Extraordinary(corner)),
             _ => {
                 assert!(
@@ -286,12 +299,12 @@ impl Builder {
         }
     }
 
-    fn node(&mut self, level: &Level, leaf: Leaf, base: Option<u32>) -> Node {
+    fn node(&mut self, level: &Level<'_>, leaf: Leaf<'_>, base: Option<u32>) -> Node {
         let patch = match leaf {
             Leaf::Spline(patch) => patch,
             Leaf::Extraordinary(corner) => return Node::Extraordinary { corner },
         };
-        let points = self.points(level, &patch, base);
+        let points = self.points(level, patch, base);
         match patch.crease {
             None => Node::Regular {
                 points,
@@ -310,7 +323,12 @@ impl Builder {
     /// The halves of edges that need points of their own, so that both sides of an edge can evaluate it alike: what a half's points are relative to is up
     /// to the edge alone. It is the limit at the half's end, or, where the surface is regular there but not at the other, at that one: so they are those
     /// of a terminal node around it.
-    fn halves(&mut self, level: &Level, quarters: &[Cell], leaves: &[Option<Leaf>]) -> Vec<Half> {
+    fn halves(
+        &mut self,
+        level: &Level<'_>,
+        quarters: &[Cell],
+        leaves: &[Option<Leaf<'_>>],
+    ) -> Vec<Half> {
         let mut found = Vec::new();
         let edges = self.edges.clone();
         for (edge, half) in edges.into_iter().flat_map(|edge| [(edge, 0), (edge, 1)]) {
@@ -335,11 +353,11 @@ impl Builder {
         found
     }
 
-    fn points(&mut self, level: &Level, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
+    fn points(&mut self, level: &Level<'_>, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
         patch.points.map(|point| self.point(level, point, base))
     }
 
-    fn point(&mut self, level: &Level, point: ControlPoint, base: Option<u32>) -> u32 {
+    fn point(&mut self, level: &Level<'_>, point: ControlPoint, base: Option<u32>) -> u32 {
         *self.numbers.entry((base, point)).or_insert_with(|| {
             self.rows.push(|row| level.rows.add_to(row, &point.mask()));
             self.bases.pushed(base);
@@ -350,7 +368,7 @@ impl Builder {
 
 /// The points of a quarter that is a leaf are relative to the limit at a corner whose quarter is none, where there is one: beside its own, so that they are among
 /// the points of its star; else opposite to it. Around a single extraordinary vertex they are those of a terminal node.
-fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf>]) {
+fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf<'_>>]) {
     let is_leaf = |corner: u32| matches!(leaves[corner as usize], Some(Leaf::Spline(_)));
     for (own, quarter) in (0..).zip(quarters) {
         let others = [1, 3, 2].map(|turn| (own + turn) % 4);

@@ -10,7 +10,7 @@ use crate::mesh::sharpness::is_infinite;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::builder::{DEEPEST, Plan, PlanOptions, SHALLOWEST, sorted};
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Level;
+use crate::plan::level::{Level, Steps};
 use crate::plan::rows::Rows;
 use crate::plan::span::Span;
 use crate::plan::tree::Node;
@@ -67,12 +67,21 @@ impl EdgePlan {
         kind: EdgeKind,
         options: PlanOptions,
     ) -> Result<EdgePlan> {
+        EdgePlan::build_by(configuration, kind, options, &Steps::default())
+    }
+
+    pub(super) fn build_by(
+        configuration: &Configuration,
+        kind: EdgeKind,
+        options: PlanOptions,
+        steps: &Steps,
+    ) -> Result<EdgePlan> {
         let options = options.check()?;
         configuration.check_corners(match kind {
             EdgeKind::Whole => 2,
             EdgeKind::Spoke => configuration.arity(),
         })?;
-        let whole = Level::whole(configuration);
+        let whole = Level::whole(configuration, steps);
         let base = match kind {
             EdgeKind::Whole => whole,
             EdgeKind::Spoke => whole.refined(&[(0, 0)]),
@@ -130,7 +139,7 @@ impl EdgePlan {
 }
 
 impl Builder {
-    fn grow(&mut self, level: &Level, stretch: Stretch, depth: u32) -> Branch {
+    fn grow(&mut self, level: &Level<'_>, stretch: Stretch, depth: u32) -> Branch {
         let Stretch {
             edge,
             from,
@@ -178,7 +187,7 @@ impl Builder {
         Branch::Inner(Box::new(halves))
     }
 
-    fn leaf(&mut self, level: &Level, curve: &EdgeCurve, span: Span, depth: u32) -> Node {
+    fn leaf(&mut self, level: &Level<'_>, curve: &EdgeCurve, span: Span, depth: u32) -> Node {
         let half = u32::from(!span.interior_half_is_upper());
         let required = span.required_level(self.options.max_level);
         // Both halves may share points at depth 1.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::plan::builder::{Plan, PlanOptions, Stencil};
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Level;
+use crate::plan::level::{Level, Steps};
 use crate::plan::rows::Rows;
 use crate::plan::sums::Sums;
 use crate::subdivision::{
@@ -52,12 +52,21 @@ impl VertexPlan {
         kind: VertexKind,
         options: PlanOptions,
     ) -> Result<VertexPlan> {
+        VertexPlan::build_by(configuration, kind, options, &Steps::default())
+    }
+
+    pub(super) fn build_by(
+        configuration: &Configuration,
+        kind: VertexKind,
+        options: PlanOptions,
+        steps: &Steps,
+    ) -> Result<VertexPlan> {
         let options = options.check()?;
         configuration.check_corners(match kind {
             VertexKind::Control => 1,
             VertexKind::Centre => configuration.arity(),
         })?;
-        let whole = Level::whole(configuration);
+        let whole = Level::whole(configuration, steps);
         let (mut level, mut corners) = match kind {
             VertexKind::Control => {
                 let around = whole.topology.vertex_faces(0);
@@ -152,7 +161,7 @@ fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Sums) {
 }
 
 /// The next level around the vertex: the children at it, in the order of their parents, and their corners there.
-fn refined(level: &Level, corners: &[(u32, u32)]) -> (Level, Vec<(u32, u32)>) {
+fn refined<'a>(level: &Level<'a>, corners: &[(u32, u32)]) -> (Level<'a>, Vec<(u32, u32)>) {
     let arity = |face: u32| level.topology.face(face).len();
     let next = corners.iter().enumerate().map(|(child, &(face, corner))| {
         // A quad's child keeps its corners; an n-gon's begins at the vertex.

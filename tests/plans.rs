@@ -72,15 +72,18 @@ fn packed(plans: &[Plan]) -> PackedPlans {
 
 /// Points are weighted means of the ring, or differences of two: those deep in the tree are relative to one of the first.
 fn hold_sums(plan: &Plan) {
-    for (number, stencil) in plan.stencils.iter().enumerate() {
-        let sum: f64 = stencil.weights.iter().sum();
-        let size: f64 = stencil.weights.iter().map(|w| w.abs()).sum();
+    for number in 0..plan.stencils.len() {
+        let weights = plan.stencils.weights(number);
+        let sum: f64 = weights.iter().sum();
+        let size: f64 = weights.iter().map(|w| w.abs()).sum();
         let off = (sum - sum.round()).abs();
         let whole = sum.round() == 1.0 || sum.round() == 0.0 && number > 0;
         assert!(off < 1e-12 * size.max(1.0) && whole, "{number}: {sum}");
-        assert_eq!(stencil.weights.len(), plan.ring_size);
+        assert_eq!(weights.len(), plan.ring_size);
     }
-    let levels: Vec<u32> = plan.stencils.iter().map(|stencil| stencil.level).collect();
+    let levels: Vec<u32> = (0..plan.stencils.len())
+        .map(|number| plan.stencils.level(number))
+        .collect();
     assert!(levels.is_sorted() && levels.iter().all(|&level| level <= plan.max_level));
 }
 
@@ -262,8 +265,8 @@ proptest! {
             let VertexPlan { plan, sides, .. } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default()).expect("sound");
             let positions: Vec<DVec3> = ring.vertices.iter().map(|&v| mesh.positions()[v as usize]).collect();
             prop_assert_eq!((plan.ring_size, sides.len()), (positions.len(), ring.faces.len()));
-            let weights = plan.stencils[0].weights.iter().enumerate();
-            let limit = DVec3::blend(&weights.map(|(i, &w)| (i as u32, w)).collect::<Vec<_>>(), &positions);
+            let weights = plan.stencils.weights(0).into_iter().enumerate();
+            let limit = DVec3::blend(&weights.map(|(i, w)| (i as u32, w)).collect::<Vec<_>>(), &positions);
             prop_assert!(limit.distance(expected.position) < 1e-12 * (1.0 + expected.position.length()));
         }
         for (_, ring) in rings(truth.topology()) {

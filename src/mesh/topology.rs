@@ -26,19 +26,12 @@ pub struct Edge {
     pub vertices: [u32; 2],
     /// Sharpness at this level.
     pub sharpness: f32,
-    /// Sharpness, at the next level, of the half at each end. The two differ only under Chaikin's rule.
-    pub next: [f32; 2],
 }
 
 impl Edge {
     /// The end that is not `vertex`.
     pub fn other(&self, vertex: u32) -> u32 {
         self.vertices[0] ^ self.vertices[1] ^ vertex
-    }
-
-    /// Sharpness at the next level of the half that ends in `vertex`.
-    pub fn next_at(&self, vertex: u32) -> f32 {
-        self.next[usize::from(self.vertices[1] == vertex)]
     }
 }
 
@@ -59,6 +52,8 @@ pub struct Topology {
     faces: Arc<Faces>,
     face_edges: Vec<u32>,
     edges: Vec<Edge>,
+    /// Sharpness, at the next level, of each edge's half at either end, which differ only under Chaikin's rule; empty where all are smooth.
+    next: Vec<[f32; 2]>,
     edge_faces: Lists<u32>,
     vertex_faces: Lists<FaceCorner>,
     vertex_edges: Lists<u32>,
@@ -198,9 +193,8 @@ impl Topology {
     fn sharpen_boundaries(&mut self) {
         for number in 0..self.edges.len() {
             if self.edge_faces.get(number as u32).len() < 2 {
-                let edge = &mut self.edges[number];
-                edge.sharpness = INFINITE_SHARPNESS;
-                edge.next = [INFINITE_SHARPNESS; 2];
+                self.edges[number].sharpness = INFINITE_SHARPNESS;
+                self.set_next(number as u32, [INFINITE_SHARPNESS; 2]);
             }
         }
     }
@@ -299,9 +293,10 @@ impl Topology {
                 .map(|&edge| self.edges[edge as usize].sharpness);
             let sharpness: SmallVec<[f32; 8]> = sharpness.collect();
             let next = decayed_around_vertex(self.options.creasing, &sharpness);
+            self.next.resize(self.edges.len(), [0.0; 2]);
             for (&edge, next) in around.iter().zip(next) {
-                let edge = &mut self.edges[edge as usize];
-                edge.next[usize::from(edge.vertices[1] == vertex)] = next;
+                let end = self.edges[edge as usize].vertices[1] == vertex;
+                self.next[edge as usize][usize::from(end)] = next;
             }
         }
     }
@@ -354,6 +349,24 @@ impl Topology {
     /// An edge by number, which must be one.
     pub(crate) fn edge(&self, edge: u32) -> &Edge {
         &self.edges[edge as usize]
+    }
+
+    /// Sharpness, at the next level, of the half of an edge at each of its ends. The two differ only under Chaikin's rule.
+    pub fn next_sharpness(&self, edge: u32) -> [f32; 2] {
+        self.next.get(edge as usize).copied().unwrap_or_default()
+    }
+
+    /// Sharpness, at the next level, of the half of an edge that ends in `vertex`.
+    pub(crate) fn next_at(&self, edge: u32, vertex: u32) -> f32 {
+        let end = self.edge(edge).vertices[1] == vertex;
+        self.next_sharpness(edge)[usize::from(end)]
+    }
+
+    fn set_next(&mut self, edge: u32, next: [f32; 2]) {
+        if next != self.next_sharpness(edge) {
+            self.next.resize(self.edges.len(), [0.0; 2]);
+            self.next[edge as usize] = next;
+        }
     }
 
     /// The faces on an edge.
@@ -508,8 +521,9 @@ impl Topology {
         let vertices = vertices.filter(|vertex| is_sharp(*vertex.1));
         words.extend(vertices.flat_map(sharp));
         for (number, edge) in (0..).zip(&self.edges) {
-            if is_sharp(edge.sharpness) || edge.next != [0.0; 2] {
-                let [near, far] = edge.next.map(f32::to_bits);
+            let next = self.next_sharpness(number);
+            if is_sharp(edge.sharpness) || next != [0.0; 2] {
+                let [near, far] = next.map(f32::to_bits);
                 words.extend([u32::MAX, number, edge.sharpness.to_bits(), near, far]);
             }
         }

@@ -11,6 +11,7 @@ use crate::mesh::faces::Faces;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
 use crate::method::ptex::{Child, child};
+use crate::tessellation::Domain;
 
 /// The edges and faces of a control mesh. Both count as sides, edges first: a patch's edge is a part of one of its mesh's edges, or lies within
 /// one of its faces.
@@ -118,6 +119,19 @@ pub(super) fn sides_of<'a>(
     model: &Model,
     passes: impl Iterator<Item = &'a [abi::Patch]>,
 ) -> Vec<Vec<[u32; 4]>> {
+    let whole = model.mesh().options().scheme.is_whole(4);
+    if whole && model.topology().quads().is_some() {
+        let part = |patch: &abi::Patch| Part {
+            domain: Domain::Quads,
+            face: patch.ptex,
+            corner: 0,
+            ptex: patch.ptex,
+        };
+        let side = |patch: &abi::Patch| sides(model.topology(), part(patch), patch);
+        return passes
+            .map(|patches| patches.iter().map(side).collect())
+            .collect();
+    }
     let parts = patches::parts(model);
     let last = parts.last().map_or(0, |part| part.ptex as usize + 1);
     let mut places = vec![0; last];

@@ -10,6 +10,7 @@ use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
+use crate::plan::stencils::Stencils;
 use crate::plan::strip::{self, Stretch, Strip};
 use crate::plan::tree::{Node, Tree, child_of_corner};
 use crate::subdivision::{BsplinePatch, ControlPoint, is_plain_edge, limit_stencil};
@@ -53,19 +54,6 @@ impl PlanOptions {
     }
 }
 
-/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring. Below the root of a tree control points are relative to one
-/// of the plan's first points, which the nodes name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stencil {
-    /// One weight a vertex of the ring.
-    pub weights: Vec<f64>,
-    /// The lowest level that needs it, 0..=max_level.
-    pub level: u32,
-    /// The corner of the face near which it is relative to the limit, or whose limit it is. The sum is then taken relative to that corner's vertex,
-    /// which has the same bits in all faces there; otherwise to the ring's first.
-    pub corner: Option<u32>,
-}
-
 /// The plan of a configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -75,8 +63,8 @@ pub struct Plan {
     pub max_level: u32,
     /// The quadtree; node 0 is its root.
     pub nodes: Vec<Node>,
-    /// Sorted by level.
-    pub stencils: Vec<Stencil>,
+    /// Its points.
+    pub stencils: Stencils,
     /// At each corner whose normal is that of its surroundings, see `plan/nearby.rs`: two tangents, weights of the ring.
     pub nearby: [Option<[Vec<f64>; 2]>; 4],
     /// Of a quad, its cells along each edge, as far as they have all points that the edge is evaluated with.
@@ -104,10 +92,10 @@ impl Plan {
         let bases = Bases::new(4);
         let mut builder = Builder {
             options,
-            rows: bases.rows(base.rows.width()),
+            rows: bases.rows(steps.memory(), base.rows.width()),
             bases,
             numbers: FxHashMap::default(),
-            edges: shared_edges(&base.topology, configuration),
+            edges: shared_edges(base.topology(), configuration),
             halves: Vec::new(),
         };
         let tree = builder.grow(&base).fold();
@@ -144,18 +132,9 @@ impl Plan {
         }
         bases.apply(&mut rows, &mut levels);
         let corners = bases.of_rows();
-        let plan = sorted(nodes, strips, &rows, &levels, &corners, options.max_level);
+        let plan = sorted(nodes, strips, &rows, &levels, &corners, options, steps);
+        steps.leave(rows);
         Ok(Plan { nearby, ..plan })
-    }
-
-    /// How many stencils each level 0..=max_level needs; they are the first ones.
-    pub fn level_counts(&self) -> Vec<usize> {
-        (0..=self.max_level)
-            .map(|level| {
-                self.stencils
-                    .partition_point(|stencil| stencil.level <= level)
-            })
-            .collect()
     }
 }
 
@@ -174,7 +153,7 @@ fn shared_edges(topology: &Topology, configuration: &Configuration) -> Vec<u32> 
 fn limit_row(base: &Level<'_>, corner: u32) -> Vec<f64> {
     let mut level = base.clone();
     loop {
-        if let Some(limit) = limit_stencil(&level.topology, 0, corner) {
+        if let Some(limit) = limit_stencil(level.topology(), 0, corner) {
             let mut rows = Rows::zero(level.rows.width(), 0);
             rows.push(|row| level.rows.add_to(row, &limit.position));
             return rows.row(0).to_vec();
@@ -462,7 +441,8 @@ pub(super) fn sorted(
     rows: &Rows,
     levels: &[u32],
     corners: &[Option<u32>],
-    max_level: u32,
+    PlanOptions { max_level, .. }: PlanOptions,
+    steps: &Steps,
 ) -> Plan {
     let used = |&point: &u32| levels[point as usize] != UNUSED;
     let mut order: Vec<u32> = (0..rows.len() as u32).filter(used).collect();
@@ -496,22 +476,18 @@ pub(super) fn sorted(
     for number in strips.iter_mut().flatten().flat_map(Strip::numbers) {
         *number = place[*number as usize];
     }
-    let weights = |row: &[f64]| {
-        row.iter()
-            .map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight })
-            .collect()
-    };
-    let stencils = order.iter().map(|&old| Stencil {
-        weights: weights(rows.row(old as usize)),
-        level: levels[old as usize],
-        corner: corners[old as usize],
-    });
+    let mut stencils = Stencils::new(rows.width(), !steps.rounded);
+    for &old in &order {
+        let row = rows.row(old as usize).iter();
+        let weights = row.map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight });
+        stencils.push(levels[old as usize], corners[old as usize], weights);
+    }
     Plan {
         nearby: Default::default(),
         strips,
         ring_size: rows.width(),
         max_level,
         nodes,
-        stencils: stencils.collect(),
+        stencils,
     }
 }

@@ -91,11 +91,11 @@ impl EdgePlan {
             EdgeKind::Whole => 0,
             EdgeKind::Spoke => 1,
         };
-        let edge = base.topology.face_edges(0)[corner];
-        let sides = base.topology.edge_faces(edge).to_vec();
-        let sharp = is_infinite(base.topology.edge(edge).sharpness);
+        let edge = base.topology().face_edges(0)[corner];
+        let sides = base.topology().edge_faces(edge).to_vec();
+        let sharp = is_infinite(base.topology().edge(edge).sharpness);
         // The patches of an n-gon have half of an edge each.
-        let halved = |&face: &u32| base.topology.face(face).len() != 4;
+        let halved = |&face: &u32| base.topology().face(face).len() != 4;
         let deeper = u32::from(sides.iter().any(halved));
         let options = PlanOptions {
             max_level: options.max_level + deeper,
@@ -103,7 +103,7 @@ impl EdgePlan {
         };
         let stretch = Stretch {
             edge,
-            from: base.topology.face(0)[corner],
+            from: base.topology().face(0)[corner],
             sides: sides.clone(),
             ends: [true; 2],
             span: Span::WHOLE,
@@ -111,7 +111,7 @@ impl EdgePlan {
         let bases = Bases::new(2);
         let mut builder = Builder {
             options,
-            rows: bases.rows(base.rows.width()),
+            rows: bases.rows(steps.memory(), base.rows.width()),
             bases,
             levels: vec![UNUSED; 2],
         };
@@ -123,16 +123,18 @@ impl EdgePlan {
             ..
         } = builder;
         bases.apply(&mut rows, &mut levels);
-        let nodes = flatten(branch);
+        let plan = sorted(
+            flatten(branch),
+            Default::default(),
+            &rows,
+            &levels,
+            &vec![None; rows.len()],
+            options,
+            steps,
+        );
+        steps.leave(rows);
         Ok(EdgePlan {
-            plan: sorted(
-                nodes,
-                Default::default(),
-                &rows,
-                &levels,
-                &vec![None; rows.len()],
-                options.max_level,
-            ),
+            plan,
             sides: if sharp { sides } else { Vec::new() },
         })
     }
@@ -149,11 +151,11 @@ impl Builder {
         } = stretch;
         // The half of the edge that it is or lies in.
         let half = u32::from(!span.interior_half_is_upper());
-        let both = [from, level.topology.edge(edge).other(from)];
+        let both = [from, level.topology().edge(edge).other(from)];
         for (vertex, _) in both.iter().zip(ends).filter(|(_, end)| depth > 0 && *end) {
             self.bases.found(half, &level.rows.row(*vertex as usize));
         }
-        if let Some(curve) = edge_curve(&level.topology, edge, from, sides) {
+        if let Some(curve) = edge_curve(level.topology(), edge, from, sides) {
             return Branch::Leaf(self.leaf(level, &curve, span, depth));
         }
         let last = depth >= self.options.max_level.max(SHALLOWEST);
@@ -172,8 +174,8 @@ impl Builder {
             let sides: Vec<u32> = (0..sides.len() as u32)
                 .map(|side| 2 * side + half)
                 .collect();
-            let shared = |&edge: &u32| next.topology.edge(edge).vertices.contains(&(half + 1));
-            let edges = next.topology.vertex_edges(from);
+            let shared = |&edge: &u32| next.topology().edge(edge).vertices.contains(&(half + 1));
+            let edges = next.topology().vertex_edges(from);
             let edge = edges.iter().copied().find(shared);
             let stretch = Stretch {
                 edge: edge.expect("the halves of an edge are edges"),

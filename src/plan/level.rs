@@ -7,17 +7,15 @@ use rustc_hash::FxHashMap;
 
 use crate::mesh::topology::Topology;
 use crate::plan::configuration::Configuration;
+use crate::plan::rows::Rows;
 use crate::plan::sums::Sums;
-use crate::subdivision::{BsplinePatch, Refinement, bspline_patch, refine, refine_edge};
+use crate::subdivision::{BsplinePatch, Mask, Refinement, bspline_patch, refine, refine_edge};
 
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
 #[derive(Clone)]
 pub(super) struct Level<'a> {
     steps: &'a Steps,
-    /// The topology.
-    pub topology: Rc<Topology>,
-    /// Its chosen cells as B-splines; none for the levels of edges.
-    patches: Rc<[Option<BsplinePatch>]>,
+    step: Rc<Step>,
     pub rows: Sums,
 }
 
@@ -28,36 +26,46 @@ impl<'a> Level<'a> {
         Level {
             steps,
             rows: Sums::identity(topology.vertex_count()),
-            patches: Rc::new([bspline_patch(&topology, 0)]),
-            topology: topology.into(),
+            step: Rc::new(Step {
+                patches: vec![bspline_patch(&topology, 0)],
+                masks: Vec::new(),
+                topology,
+            }),
         }
     }
 
     /// The level at which the plan of a face begins: the quad itself, or the n-gon's part at its corner 0.
     pub fn base(configuration: &Configuration, steps: &'a Steps) -> Level<'a> {
         let base = Level::whole(configuration, steps);
-        if base.topology.face(0).len() == 4 {
+        if base.topology().face(0).len() == 4 {
             base
         } else {
             base.refined(&[(0, 0)])
         }
     }
 
+    /// Its faces.
+    pub fn topology(&self) -> &Topology {
+        &self.step.topology
+    }
+
     /// A cell as a B-spline, see [`bspline_patch`].
     pub fn patch(&self, cell: u32) -> Option<&BsplinePatch> {
-        self.patches[cell as usize].as_ref()
+        self.step.patches[cell as usize].as_ref()
     }
 
     /// The next level of some cells.
     pub fn refined(&self, cells: &[(u32, u32)]) -> Level<'a> {
-        let cells_words = cells.iter().flat_map(|&(face, corner)| [face, corner]);
-        self.next(0, cells_words, || refine(&self.topology, cells))
+        let words = cells.iter().flat_map(|&(face, corner)| [face, corner]);
+        self.next(CELLS, words, || refine(self.topology(), cells))
     }
 
     /// The next level of the two halves of an edge; see [`refine_edge`].
     pub fn refined_edge(&self, edge: u32, from: u32, sides: &[u32]) -> Level<'a> {
         let words = [edge, from].into_iter().chain(sides.iter().copied());
-        self.next(1, words, || refine_edge(&self.topology, edge, from, sides))
+        self.next(EDGE, words, || {
+            refine_edge(self.topology(), edge, from, sides)
+        })
     }
 
     fn next(
@@ -66,12 +74,11 @@ impl<'a> Level<'a> {
         chosen: impl Iterator<Item = u32>,
         refine: impl FnOnce() -> Refinement,
     ) -> Level<'a> {
-        let step = self.steps.step(&self.topology, kind, chosen, refine);
+        let step = self.steps.step(self.topology(), kind, chosen, refine);
         Level {
             steps: self.steps,
-            topology: step.topology.clone(),
-            patches: step.patches.clone(),
-            rows: self.rows.next(&step.refinement.masks),
+            rows: self.rows.next(&step.masks),
+            step,
         }
     }
 }
@@ -80,22 +87,47 @@ impl<'a> Level<'a> {
 /// plans have the same: what depends on the topology alone is done once.
 #[derive(Default)]
 pub struct Steps {
+    /// Whether plans get weights as shaders have them.
+    pub(super) rounded: bool,
     known: RefCell<FxHashMap<Box<[u32]>, Rc<Step>>>,
+    /// Memory for rows, which one plan after another uses.
+    memory: RefCell<Vec<f64>>,
 }
 
-/// A step: the next topology, where its vertices come from, and its cells as B-splines.
+/// A step: the next topology, where its vertices come from, and its cells as B-splines; no cells of edges.
 struct Step {
-    refinement: Refinement,
-    topology: Rc<Topology>,
-    patches: Rc<[Option<BsplinePatch>]>,
+    topology: Topology,
+    masks: Vec<Mask>,
+    patches: Vec<Option<BsplinePatch>>,
 }
 
 /// Topologies of more vertices are not kept.
 const SMALL: usize = 128;
-/// So many steps are kept, some ten megabytes.
-const MOST: usize = 1 << 9;
+/// So many steps are kept, some three megabytes.
+const MOST: usize = 1 << 7;
+/// What is refined.
+const CELLS: u32 = 0;
+const EDGE: u32 = 1;
 
 impl Steps {
+    /// For plans with weights as shaders have them.
+    pub fn rounded() -> Steps {
+        Steps {
+            rounded: true,
+            ..Steps::default()
+        }
+    }
+
+    /// The memory that [`Steps::leave`] left.
+    pub(super) fn memory(&self) -> Vec<f64> {
+        self.memory.take()
+    }
+
+    /// Leaves the memory of rows to those of the next plan.
+    pub(super) fn leave(&self, rows: Rows) {
+        self.memory.replace(rows.into_memory());
+    }
+
     fn step(
         &self,
         topology: &Topology,
@@ -124,13 +156,17 @@ impl Steps {
 }
 
 impl Step {
-    fn new(kind: u32, mut refinement: Refinement) -> Step {
-        let topology = std::mem::take(&mut refinement.topology);
-        let cells = 0..if kind == 0 { refinement.cells } else { 0 };
+    fn new(kind: u32, refinement: Refinement) -> Step {
+        let Refinement {
+            topology,
+            masks,
+            cells,
+        } = refinement;
+        let cells = 0..if kind == CELLS { cells } else { 0 };
         Step {
             patches: cells.map(|cell| bspline_patch(&topology, cell)).collect(),
-            topology: topology.into(),
-            refinement,
+            topology,
+            masks,
         }
     }
 }

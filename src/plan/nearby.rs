@@ -33,7 +33,7 @@ fn is_asked(topology: &Topology, corner: u32) -> bool {
 fn at_corner(base: &Level<'_>, corner: u32) -> [Vec<f64>; 2] {
     let first = base.refined(&[(0, corner)]);
     let deepest = (1..HALVINGS).fold(first, |level, _| level.refined(&[(0, corner)]));
-    let limit = limit_stencil(&deepest.topology, 0, (corner + 2) % 4);
+    let limit = limit_stencil(deepest.topology(), 0, (corner + 2) % 4);
     let limit = limit.expect("four quads meet inside of a face, and nothing there is sharp");
     let mut rows = Rows::zero(deepest.rows.width(), 0);
     rows.push(|row| deepest.rows.add_to(row, &limit.du));

@@ -70,27 +70,27 @@ impl PackedPlans {
         if points > greatest {
             return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
         }
-        let counts = plan.level_counts();
         self.headers.push(PlanHeader {
             ring_size: plan.ring_size as u32,
             rows: self.rows.len() as u32,
             root: self.nodes.len() as u32,
             max_level: plan.max_level,
-            counts: std::array::from_fn(|level| counts[level.min(counts.len() - 1)] as u32),
+            counts: std::array::from_fn(|level| {
+                plan.stencils.count(plan.max_level.min(level as u32)) as u32
+            }),
         });
         let root = self.nodes.len() as u32;
         for node in &plan.nodes {
             let packed = self.pack(node, plan, root);
             self.nodes.push(packed);
         }
-        let tangents = plan.nearby.iter().flatten().flatten();
-        let rows = plan
-            .stencils
-            .iter()
-            .map(|stencil| (&stencil.weights, stencil.corner));
-        for (row, corner) in rows.chain(tangents.map(|row| (row, None))) {
+        for number in 0..plan.stencils.len() {
+            let corner = plan.stencils.corner(number);
             let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
-            self.rows.push(row, corner)?;
+            self.rows.push(&plan.stencils.weights(number), corner)?;
+        }
+        for tangent in plan.nearby.iter().flatten().flatten() {
+            self.rows.push(tangent, abi::STENCIL_OWN)?;
         }
         let mut next = plan.stencils.len() as u32;
         self.nearby.push(plan.nearby.each_ref().map(|tangents| {
@@ -163,7 +163,7 @@ impl PackedPlans {
         };
         // Bases come first among the stencils, so their numbers are small.
         let base = base.map_or(0, |number| {
-            let corner = plan.stencils[number as usize].corner;
+            let corner = plan.stencils.corner(number as usize);
             let origin = corner.map_or(0, |corner| abi::STENCIL_CORNER + corner);
             (number + 1) << abi::NODE_BASE_SHIFT | origin << abi::NODE_ORIGIN_SHIFT
         });

@@ -223,7 +223,7 @@ impl Step<'_> {
 pub(super) fn half(parent: &Topology, edge: u32, vertex: u32) -> (f32, [f32; 2]) {
     let method = parent.options().creasing;
     let whole = parent.edge(edge);
-    let sharpness = whole.next_at(vertex);
+    let sharpness = parent.next_at(edge, vertex);
     if !is_sharp(sharpness) {
         return (sharpness, [0.0; 2]);
     }
@@ -231,15 +231,15 @@ pub(super) fn half(parent: &Topology, edge: u32, vertex: u32) -> (f32, [f32; 2])
         return (sharpness, [decayed(sharpness); 2]);
     }
     let around = parent.vertex_edges(vertex);
-    let halves: SmallVec<[f32; 8]> = around
-        .iter()
-        .map(|&e| parent.edge(e).next_at(vertex))
-        .collect();
+    let halves: SmallVec<[f32; 8]> = around.iter().map(|&e| parent.next_at(e, vertex)).collect();
     let at = around
         .iter()
         .position(|&e| e == edge)
         .expect("the edge ends in this vertex");
     let near = decayed_around_vertex(method, &halves)[at];
-    let far = decayed_around_vertex(method, &[sharpness, whole.next_at(whole.other(vertex))])[0];
+    let far = decayed_around_vertex(
+        method,
+        &[sharpness, parent.next_at(edge, whole.other(vertex))],
+    )[0];
     (sharpness, [near, far])
 }

@@ -186,6 +186,7 @@ impl Topology {
         let is_first = |&(side, &first): &(usize, &u32)| side == first as usize;
         let count = first.iter().enumerate().filter(is_first).count();
         let mut edges: Vec<Edge> = Vec::with_capacity(count);
+        let mut nexts: Vec<[f32; 2]> = Vec::new();
         let mut face_edges: Vec<u32> = Vec::with_capacity(first.len());
         for face in 0..self.face_count() as u32 {
             let vertices = self.face(face);
@@ -199,10 +200,13 @@ impl Topology {
                 let to = *vertices.get(corner + 1).unwrap_or(&vertices[0]);
                 let (sharpness, next) = edge(side, from, to);
                 face_edges.push(edges.len() as u32);
+                if next != [0.0; 2] {
+                    nexts.resize(count, [0.0; 2]);
+                    nexts[edges.len()] = next;
+                }
                 edges.push(Edge {
                     vertices: [from, to],
                     sharpness,
-                    next,
                 });
             }
         }
@@ -220,6 +224,7 @@ impl Topology {
             vertex_edges.push(edge.vertices[1], number);
         }
         self.edges = edges;
+        self.next = nexts;
         self.face_edges = face_edges;
         self.edge_faces = edge_faces;
         self.vertex_edges = vertex_edges;
@@ -254,9 +259,8 @@ impl Topology {
             sharpness,
             self.options,
             |edge, a, b| {
-                let edge = self.edge(edge);
-                let next = [a, b].map(|local| edge.next_at(vertices[local as usize]));
-                (edge.sharpness, next)
+                let next = [a, b].map(|local| self.next_at(edge, vertices[local as usize]));
+                (self.edge(edge).sharpness, next)
             },
         );
         (topology, vertices)

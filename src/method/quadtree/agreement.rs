@@ -1,7 +1,7 @@
 //! Edges that the faces on both sides evaluate with points of their own plans, and get the same bits.
 //!
 //! A point has the same bits in both faces if it is a sum of the same weights over the same vertices in the same order, relative to the same vertex.
-//! Order and origin are the mesh's own (see `irregular.rs`, `Stencil::corner`); that the weights agree in every bit is looked up, edge by edge.
+//! Order and origin are the mesh's own (see `irregular.rs`, `Stencils::corner`); that the weights agree in every bit is looked up, edge by edge.
 //! Where they do not, or where one side has other cells than the other, the edge gets a plan of its own.
 
 use rayon::prelude::*;
@@ -203,26 +203,30 @@ impl Side<'_> {
         let is_shared = |vertex: u32| shared.is_none_or(|shared| shared.contains(&vertex));
         let mut pairs = points.chain([(&own.base, &others.base)]);
         pairs.all(|(&own, &others)| {
-            self.origin(own) == other.origin(others)
-                && self.terms(own).eq(other.terms(others))
-                && self.terms(own).all(|(vertex, _)| is_shared(vertex))
+            if self.origin(own) != other.origin(others) {
+                return false;
+            }
+            let terms = self.terms(own);
+            terms == other.terms(others) && terms.iter().all(|&(vertex, _)| is_shared(vertex))
         })
     }
 
     /// The vertex that a point is relative to.
     fn origin(self, point: u32) -> Option<u32> {
-        let corner = self.plan.stencils[point as usize].corner?;
+        let corner = self.plan.stencils.corner(point as usize)?;
         let corner = (self.patch.turn(self.topology) + self.patch.corner(corner)) % 4;
         Some(self.topology.face(self.patch.record.part.face)[corner as usize])
     }
 
-    /// What a point is a sum of, in the order in which it is added.
-    fn terms(&self, point: u32) -> impl Iterator<Item = (u32, u32)> {
-        let weights = &self.plan.stencils[point as usize].weights;
-        let vertices = self.patch.vertices;
-        self.patch.order().filter_map(move |place| {
-            let weight = weights[place as usize] as f32;
-            (weight != 0.0).then(|| (vertices[place as usize], weight.to_bits()))
-        })
+    /// What a point is a sum of, least vertex first, which is the order in which it is added.
+    fn terms(&self, point: u32) -> SmallVec<[(u32, u32); 32]> {
+        let terms = self.plan.stencils.terms(point as usize).into_iter();
+        let vertex = |(place, weight): (u16, f32)| {
+            let vertex = self.patch.vertices[usize::from(place)];
+            (vertex, weight.to_bits())
+        };
+        let mut terms: SmallVec<[(u32, u32); 32]> = terms.map(vertex).collect();
+        terms.sort_unstable();
+        terms
     }
 }

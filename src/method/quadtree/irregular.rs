@@ -82,11 +82,6 @@ impl Irregular<'_> {
         (self.order[i / 2] >> (16 * (i % 2))) as u16
     }
 
-    /// The places in their order.
-    pub fn order(&self) -> impl Iterator<Item = u16> {
-        (0..self.vertices.len()).map(|i| self.ordered(i))
-    }
-
     /// Where a vertex of the mesh stands in the ring; none where it does not.
     pub fn place(&self, vertex: u32) -> Option<u16> {
         let (mut low, mut high) = (0, self.vertices.len());

@@ -155,7 +155,7 @@ impl Database {
         let made: Result<Vec<(Entry, Option<bool>)>> = keys
             .par_iter()
             .zip(&stored)
-            .map_init(Steps::default, |steps, (key, stored)| {
+            .map_init(Steps::rounded, |steps, (key, stored)| {
                 let read = stored.as_ref().map(|stored| words::entry(stored, key));
                 let sound = read.as_ref().map(Option::is_some);
                 let entry = match read.flatten() {

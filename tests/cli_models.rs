@@ -155,8 +155,12 @@ fn the_quadtree_of_a_face_is_drawn_and_told() {
             let nodes = plan["nodes"].as_array().expect("a list");
             let mut area = 0.0;
             for node in nodes {
-                let [u, v, size] = ["u", "v", "size"].map(|key| node[key].as_f64().expect("a number"));
-                assert!(u >= 0.0 && v >= 0.0 && u + size <= 1.0 && v + size <= 1.0, "{node}");
+                let [u, v, size] =
+                    ["u", "v", "size"].map(|key| node[key].as_f64().expect("a number"));
+                assert!(
+                    u >= 0.0 && v >= 0.0 && u + size <= 1.0 && v + size <= 1.0,
+                    "{node}"
+                );
                 kinds.insert(node["kind"].to_string());
                 if node["kind"] != "internal" {
                     area += size * size;
@@ -172,7 +176,11 @@ fn the_quadtree_of_a_face_is_drawn_and_told() {
     let (_folder, path) = scratch("face.svg");
     run(&["plan", "builtin:ngons", "--face", "1", "-o", &path]);
     let picture = std::fs::read_to_string(&path).expect("it was written");
-    assert!(picture.starts_with("<svg") && picture.contains("terminal") && picture.contains("valence 3"));
+    assert!(
+        picture.starts_with("<svg")
+            && picture.contains("terminal")
+            && picture.contains("valence 3")
+    );
     for (arguments, word) in [
         (["--face", "4000", "-o", &path], "there is no face 4000"),
         (["--face", "1", "-o", "face.png"], ".svg, .json"),

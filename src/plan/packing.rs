@@ -84,10 +84,12 @@ impl PackedPlans {
             let packed = self.pack(node, plan, root);
             self.nodes.push(packed);
         }
+        let mut weights = Vec::new();
         for number in 0..plan.stencils.len() {
             let corner = plan.stencils.corner(number);
             let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
-            self.rows.push(&plan.stencils.weights(number), corner)?;
+            plan.stencils.write_weights(number, &mut weights);
+            self.rows.push(&weights, corner)?;
         }
         for tangent in plan.nearby.iter().flatten().flatten() {
             self.rows.push(tangent, abi::STENCIL_OWN)?;

@@ -1,7 +1,5 @@
 //! The stencils of a plan.
 
-use smallvec::SmallVec;
-
 /// Control points, or limit positions and tangents, as weighted sums over the 1-ring, sorted by the level that first needs them. Below the root of a tree
 /// control points are relative to one of the first, which the nodes name.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,9 +31,6 @@ impl Default for Weights {
         Weights::Exact(Vec::new())
     }
 }
-
-/// The weights of a stencil.
-pub type Dense = SmallVec<[f64; 64]>;
 
 impl Stencils {
     /// None, over a ring of so many vertices; with exact weights, or rounded.
@@ -110,43 +105,53 @@ impl Stencils {
     }
 
     /// The weights of stencil `number`, one a vertex of the ring.
-    pub fn weights(&self, number: usize) -> Dense {
+    pub fn weights(&self, number: usize) -> Vec<f64> {
+        let mut weights = Vec::new();
+        self.write_weights(number, &mut weights);
+        weights
+    }
+
+    /// Writes the weights into a list, in the place of what is there.
+    pub(super) fn write_weights(&self, number: usize, into: &mut Vec<f64>) {
+        into.clear();
         match &self.weights {
-            Weights::Exact(weights) => weights[self.ring_size * number..][..self.ring_size].into(),
-            Weights::Rounded { weights, .. } => {
-                let (bits, start) = self.rounded_row(number);
-                let mut own = weights[start..].iter();
-                let mut dense = Dense::from_elem(0.0, self.ring_size);
-                for (place, weight) in dense.iter_mut().enumerate() {
-                    if bits[place / 64] >> (place % 64) & 1 != 0 {
-                        *weight = (*own.next().expect("as many as bits")).into();
-                    }
-                }
-                dense
+            Weights::Exact(weights) => {
+                into.extend_from_slice(&weights[self.ring_size * number..][..self.ring_size]);
+            }
+            Weights::Rounded { .. } => {
+                into.resize(self.ring_size, 0.0);
+                self.each_term(number, |place, weight| into[place] = weight.into());
             }
         }
     }
 
-    /// The vertices of the ring that have a weight in stencil `number`, as shaders have it.
-    pub(crate) fn terms(&self, number: usize) -> SmallVec<[(u16, f32); 32]> {
-        let is_term = |&(_, weight): &(u16, f32)| weight != 0.0;
+    /// How many vertices of the ring have a weight in stencil `number`, and which, as shaders have it.
+    pub(crate) fn each_term(&self, number: usize, mut visit: impl FnMut(usize, f32)) -> usize {
+        let mut count = 0;
         match &self.weights {
-            Weights::Exact(_) => {
-                let weights = self.weights(number).into_iter();
-                let weights = weights.map(|weight| weight as f32);
-                (0..).zip(weights).filter(is_term).collect()
+            Weights::Exact(weights) => {
+                let row = weights[self.ring_size * number..][..self.ring_size].iter();
+                for (place, weight) in row.map(|&weight| weight as f32).enumerate() {
+                    if weight != 0.0 {
+                        visit(place, weight);
+                        count += 1;
+                    }
+                }
             }
             Weights::Rounded { weights, .. } => {
                 let (bits, start) = self.rounded_row(number);
-                let places = bits.iter().enumerate().flat_map(|(word, &bits)| {
-                    let next = |&bits: &u64| Some(bits & bits.wrapping_sub(1));
-                    let all = std::iter::successors(Some(bits), next);
-                    let all = all.take_while(|&bits| bits != 0);
-                    all.map(move |bits| (64 * word as u32 + bits.trailing_zeros()) as u16)
-                });
-                places.zip(weights[start..].iter().copied()).collect()
+                let own = &weights[start..];
+                for (word, &bits) in bits.iter().enumerate() {
+                    let mut rest = bits;
+                    while rest != 0 {
+                        visit(64 * word + rest.trailing_zeros() as usize, own[count]);
+                        count += 1;
+                        rest &= rest - 1;
+                    }
+                }
             }
         }
+        count
     }
 
     /// Bits and beginning of a stencil with rounded weights.
@@ -195,9 +200,13 @@ mod tests {
                         .eq(expected.clone())
                 );
                 let terms = (0..).zip(expected).filter(|term| term.1 != 0.0);
-                let terms: Vec<(u16, f32)> = terms.collect();
-                assert_eq!(rounded.terms(number)[..], terms);
-                assert_eq!(exact.terms(number)[..], terms);
+                let terms: Vec<(usize, f32)> = terms.collect();
+                for stencils in [&rounded, &exact] {
+                    let mut found = Vec::new();
+                    let count =
+                        stencils.each_term(number, |place, weight| found.push((place, weight)));
+                    assert_eq!((count, &found), (terms.len(), &terms));
+                }
             }
         }
     }

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
+use crate::abi;
 use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
@@ -69,6 +70,9 @@ pub fn agreed_edges(
     }
     agreed
 }
+
+/// Of each vertex of a ring, where it stands in another.
+type Places = SmallVec<[Option<u16>; 32]>;
 
 /// What decides whether two sides agree.
 #[derive(PartialEq, Eq, Hash)]
@@ -165,22 +169,28 @@ impl Side<'_> {
         let (Some(one), Some(two)) = (self.strip(), other.strip()) else {
             return false;
         };
-        let shared = self.is_smooth_with(other).then(|| self.shared());
-        let shared = shared.as_deref();
+        let places = self.places_in(other);
         self.is_flipped() != other.is_flipped()
             && one.stretches().count() == two.stretches().count()
             && one
                 .stretches()
                 .zip(two.stretches())
-                .all(|(one, two)| self.has_same(one, other, two, shared))
+                .all(|(one, two)| self.has_same(one, other, two, &places))
     }
 
-    /// The vertices around the edge. Around smooth faces others may be the same in some pairs of faces and not in others, and must not count.
-    fn shared(self) -> Vec<u32> {
+    /// Where the vertices of this side's ring stand in the other's. Of smooth faces only those around the edge count: others may be the same in some pairs
+    /// of faces, and not in others that have the same key.
+    fn places_in(self, other: Side<'_>) -> Places {
+        let is_smooth = self.is_smooth_with(other);
         let ends = self.topology.edge(self.number()).vertices;
         let faces = ends.iter().flat_map(|&end| self.topology.vertex_faces(end));
-        let vertices = faces.flat_map(|at| self.topology.face(at.face));
-        vertices.copied().collect()
+        let around = faces.flat_map(|at| self.topology.face(at.face));
+        let around: SmallVec<[u32; 64]> = around.copied().collect();
+        let place = |&vertex: &u32| {
+            let counts = !is_smooth || around.contains(&vertex);
+            other.patch.place(vertex).filter(|_| counts)
+        };
+        self.patch.vertices.iter().map(place).collect()
     }
 
     fn has_same(
@@ -188,7 +198,7 @@ impl Side<'_> {
         own: &Stretch,
         other: Side<'_>,
         others: &Stretch,
-        shared: Option<&[u32]>,
+        places: &[Option<u16>],
     ) -> bool {
         if (own.depth, own.at, own.crease) != (others.depth, others.at, others.crease) {
             return false;
@@ -200,15 +210,22 @@ impl Side<'_> {
             .iter()
             .flatten()
             .zip(other_points.iter().flatten());
-        let is_shared = |vertex: u32| shared.is_none_or(|shared| shared.contains(&vertex));
         let mut pairs = points.chain([(&own.base, &others.base)]);
         pairs.all(|(&own, &others)| {
-            if self.origin(own) != other.origin(others) {
-                return false;
-            }
-            let terms = self.terms(own);
-            terms == other.terms(others) && terms.iter().all(|&(vertex, _)| is_shared(vertex))
+            self.origin(own) == other.origin(others) && self.has_terms(own, other, others, places)
         })
+    }
+
+    /// Whether two points are sums of the same: the order is that of the vertices' numbers in the mesh.
+    fn has_terms(self, own: u32, other: Side<'_>, others: u32, places: &[Option<u16>]) -> bool {
+        let mut weights = [0.0; abi::CONTROL_INVOCATIONS as usize];
+        let stencils = &other.plan.stencils;
+        let expected = stencils.each_term(others as usize, |at, weight| weights[at] = weight);
+        let mut same = true;
+        let count = self.plan.stencils.each_term(own as usize, |at, weight| {
+            same &= places[at].is_some_and(|at| weights[usize::from(at)] == weight);
+        });
+        same && count == expected
     }
 
     /// The vertex that a point is relative to.
@@ -216,17 +233,5 @@ impl Side<'_> {
         let corner = self.plan.stencils.corner(point as usize)?;
         let corner = (self.patch.turn(self.topology) + self.patch.corner(corner)) % 4;
         Some(self.topology.face(self.patch.record.part.face)[corner as usize])
-    }
-
-    /// What a point is a sum of, least vertex first, which is the order in which it is added.
-    fn terms(&self, point: u32) -> SmallVec<[(u32, u32); 32]> {
-        let terms = self.plan.stencils.terms(point as usize).into_iter();
-        let vertex = |(place, weight): (u16, f32)| {
-            let vertex = self.patch.vertices[usize::from(place)];
-            (vertex, weight.to_bits())
-        };
-        let mut terms: SmallVec<[(u32, u32); 32]> = terms.map(vertex).collect();
-        terms.sort_unstable();
-        terms
     }
 }

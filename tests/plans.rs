@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::meshes::{cases, manifold, scatter, wild};
 use common::surfaces::Surfaces;
 use glam::{DVec3, Vec2};
@@ -9,7 +11,7 @@ use hullform::abi;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
 use hullform::method::{METHODS, Method, method};
-use hullform::plan::database::Kind;
+use hullform::plan::database::{Entry, Kind};
 use hullform::plan::{
     Configuration, Database, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Ring,
     VertexKind, VertexPlan, walk,
@@ -42,24 +44,36 @@ fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
     rings
 }
 
-/// The different plans of a mesh.
+/// The different plans of a mesh, with exact weights; the database's are the same, rounded.
 fn plans(mesh: &ControlMesh, options: PlanOptions) -> Vec<Plan> {
     let database = Database::default();
     let rings = rings(&Topology::new(mesh));
     let all: Vec<&Configuration> = rings.iter().map(|(_, ring)| &ring.configuration).collect();
     let found = database.plans(Kind::Inside, options, &all);
-    let mut found = found.expect("the options are sound");
+    let found = found.expect("the options are sound");
+    let mut found: Vec<_> = found.into_iter().zip(all).collect();
     assert!(
         found
             .iter()
-            .all(|&(number, _)| (number as usize) < database.len())
+            .all(|((number, _), _)| (*number as usize) < database.len())
     );
-    found.sort_by_key(|&(number, _)| number);
-    found.dedup_by_key(|&mut (number, _)| number);
-    found
-        .iter()
-        .map(|(_, entry)| entry.plan().clone())
-        .collect()
+    found.sort_by_key(|((number, _), _)| *number);
+    found.dedup_by_key(|((number, _), _)| *number);
+    let exact = |((_, entry), configuration): &((u32, Arc<Entry>), &Configuration)| {
+        let plan = Plan::build(configuration, options).expect("the options are sound");
+        let kept = entry.plan();
+        assert_eq!(
+            (&plan.nodes, plan.stencils.len()),
+            (&kept.nodes, kept.stencils.len())
+        );
+        for number in 0..kept.stencils.len() {
+            let rounded = kept.stencils.weights(number).into_iter();
+            let weights = plan.stencils.weights(number).into_iter();
+            assert!(rounded.eq(weights.map(|weight| f64::from(weight as f32))));
+        }
+        plan
+    };
+    found.iter().map(exact).collect()
 }
 
 fn packed(plans: &[Plan]) -> PackedPlans {

@@ -100,10 +100,6 @@ struct Found {
 }
 
 /// What a part's limit depends on.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "most parts have one of the larger two, and few are there at a time"
-)]
 enum Surroundings {
     Regular([u32; 16]),
     Smooth(SmoothStart, SmoothRing),

@@ -132,6 +132,7 @@ impl Borders {
             smooth,
             plans,
             agreed: &agreed,
+            in_ring: vec![u16::MAX; topology.vertex_count()],
             stars: FxHashMap::default(),
             strips: FxHashMap::default(),
             lines: &lines,
@@ -180,6 +181,8 @@ struct Builder<'a> {
     strips: FxHashMap<(u32, u32, bool, bool), u32>,
     lines: &'a Shared,
     vertices: &'a Shared,
+    /// By vertex, where it stands in the ring of the patch at hand, if it does.
+    in_ring: Vec<u16>,
     /// The rings of points that have none of their own.
     stars: FxHashMap<usize, Rc<Ring>>,
     packed: &'a mut PackedPlans,
@@ -207,7 +210,8 @@ fn numbered<T: NoUninit + AnyBitPattern, const N: usize>(
 
 /// The plain vertices of a patch as they are met, as places in its ring.
 struct Plain<'a> {
-    patch: Irregular<'a>,
+    /// Where in the patch's ring the vertices of the mesh stand that are in it.
+    in_ring: &'a [u16],
     /// The plain vertices, as places.
     places: &'a mut List,
     /// Their numbers by place, once they are met.
@@ -219,8 +223,9 @@ type List = SmallVec<[u32; 32]>;
 
 impl Plain<'_> {
     fn place(&self, vertex: u32) -> u32 {
-        let place = self.patch.place(vertex);
-        u32::from(place.expect("what a patch shares is in its ring"))
+        let place = self.in_ring[vertex as usize];
+        assert_ne!(place, u16::MAX, "what a patch shares is in its ring");
+        place.into()
     }
 
     /// The number, among the plain points, of a vertex of the mesh.
@@ -308,8 +313,12 @@ impl Builder<'_> {
         counts[0] = inside;
         let nearby = self.packed.nearby[patch.record.plan as usize];
         let mut places = List::new();
+        let mut in_ring = std::mem::take(&mut self.in_ring);
+        for (place, &vertex) in (0..).zip(patch.vertices) {
+            in_ring[vertex as usize] = place;
+        }
         let mut plain = Plain {
-            patch,
+            in_ring: &in_ring,
             places: &mut places,
             numbers: smallvec![u32::MAX; patch.vertices.len()],
         };
@@ -384,6 +393,10 @@ impl Builder<'_> {
                 }
             }
         }
+        for &vertex in patch.vertices {
+            in_ring[vertex as usize] = u16::MAX;
+        }
+        self.in_ring = in_ring;
         let plain_count = places.len() as u32;
         let ends = ends(plain_count, &counts)?;
         Ok(abi::Border {

@@ -14,7 +14,7 @@ pub struct Record {
     pub plan: u32,
     /// The vertices of its ring.
     pub ring_size: u32,
-    /// As [`Ring::start`](crate::plan::Ring::start).
+    /// As [`Ring::start`](crate::plan::Ring::start), of quads.
     pub start: u8,
     /// As [`Ring::mirrored`](crate::plan::Ring::mirrored).
     pub mirrored: bool,

@@ -143,17 +143,15 @@ fn square(root: &Area<'_>, plan: &FacePlan, (left, top): (i32, i32)) -> Drawn {
     }
     for (i, (vertex, valence)) in plan.vertices.iter().enumerate() {
         let (x, y) = at(corners[i]);
-        let [across, down] = [
-            if i == 0 || i == 3 {
-                HPos::Left
-            } else {
-                HPos::Right
-            },
-            if i < 2 { HPos::Left } else { HPos::Right },
-        ];
-        let (dy, down) = match down {
-            HPos::Left => (26, VPos::Top),
-            _ => (-26, VPos::Bottom),
+        let across = if i == 0 || i == 3 {
+            HPos::Left
+        } else {
+            HPos::Right
+        };
+        let (dy, down) = if i < 2 {
+            (26, VPos::Top)
+        } else {
+            (-26, VPos::Bottom)
         };
         let tag = format!("vertex {vertex}, valence {valence}");
         root.draw(&Text::new(tag, (x, y + dy), words(15, across, down)))?;

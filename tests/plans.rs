@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::meshes::{cases, manifold, scatter, wild};
 use common::surfaces::Surfaces;
 use glam::{DVec3, Vec2};
@@ -9,7 +11,7 @@ use hullform::abi;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
 use hullform::method::{METHODS, Method, method};
-use hullform::plan::database::Kind;
+use hullform::plan::database::{Entry, Kind};
 use hullform::plan::{
     Configuration, Database, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Ring,
     VertexKind, VertexPlan, walk,
@@ -42,24 +44,36 @@ fn rings(topology: &Topology) -> Vec<(usize, Ring)> {
     rings
 }
 
-/// The different plans of a mesh.
+/// The different plans of a mesh, with exact weights; the database's are the same, rounded.
 fn plans(mesh: &ControlMesh, options: PlanOptions) -> Vec<Plan> {
     let database = Database::default();
     let rings = rings(&Topology::new(mesh));
     let all: Vec<&Configuration> = rings.iter().map(|(_, ring)| &ring.configuration).collect();
     let found = database.plans(Kind::Inside, options, &all);
-    let mut found = found.expect("the options are sound");
+    let found = found.expect("the options are sound");
+    let mut found: Vec<_> = found.into_iter().zip(all).collect();
     assert!(
         found
             .iter()
-            .all(|&(number, _)| (number as usize) < database.len())
+            .all(|((number, _), _)| (*number as usize) < database.len())
     );
-    found.sort_by_key(|&(number, _)| number);
-    found.dedup_by_key(|&mut (number, _)| number);
-    found
-        .iter()
-        .map(|(_, entry)| entry.plan().clone())
-        .collect()
+    found.sort_by_key(|((number, _), _)| *number);
+    found.dedup_by_key(|((number, _), _)| *number);
+    let exact = |((_, entry), configuration): &((u32, Arc<Entry>), &Configuration)| {
+        let plan = Plan::build(configuration, options).expect("the options are sound");
+        let kept = entry.plan();
+        assert_eq!(
+            (&plan.nodes, plan.stencils.len()),
+            (&kept.nodes, kept.stencils.len())
+        );
+        for number in 0..kept.stencils.len() {
+            let rounded = kept.stencils.weights(number).into_iter();
+            let weights = plan.stencils.weights(number).into_iter();
+            assert!(rounded.eq(weights.map(|weight| f64::from(weight as f32))));
+        }
+        plan
+    };
+    found.iter().map(exact).collect()
 }
 
 fn packed(plans: &[Plan]) -> PackedPlans {
@@ -72,15 +86,18 @@ fn packed(plans: &[Plan]) -> PackedPlans {
 
 /// Points are weighted means of the ring, or differences of two: those deep in the tree are relative to one of the first.
 fn hold_sums(plan: &Plan) {
-    for (number, stencil) in plan.stencils.iter().enumerate() {
-        let sum: f64 = stencil.weights.iter().sum();
-        let size: f64 = stencil.weights.iter().map(|w| w.abs()).sum();
+    for number in 0..plan.stencils.len() {
+        let weights = plan.stencils.weights(number);
+        let sum: f64 = weights.iter().sum();
+        let size: f64 = weights.iter().map(|w| w.abs()).sum();
         let off = (sum - sum.round()).abs();
         let whole = sum.round() == 1.0 || sum.round() == 0.0 && number > 0;
         assert!(off < 1e-12 * size.max(1.0) && whole, "{number}: {sum}");
-        assert_eq!(stencil.weights.len(), plan.ring_size);
+        assert_eq!(weights.len(), plan.ring_size);
     }
-    let levels: Vec<u32> = plan.stencils.iter().map(|stencil| stencil.level).collect();
+    let levels: Vec<u32> = (0..plan.stencils.len())
+        .map(|number| plan.stencils.level(number))
+        .collect();
     assert!(levels.is_sorted() && levels.iter().all(|&level| level <= plan.max_level));
 }
 
@@ -262,8 +279,8 @@ proptest! {
             let VertexPlan { plan, sides, .. } = VertexPlan::build(&ring.configuration, VertexKind::Control, PlanOptions::default()).expect("sound");
             let positions: Vec<DVec3> = ring.vertices.iter().map(|&v| mesh.positions()[v as usize]).collect();
             prop_assert_eq!((plan.ring_size, sides.len()), (positions.len(), ring.faces.len()));
-            let weights = plan.stencils[0].weights.iter().enumerate();
-            let limit = DVec3::blend(&weights.map(|(i, &w)| (i as u32, w)).collect::<Vec<_>>(), &positions);
+            let weights = plan.stencils.weights(0).into_iter().enumerate();
+            let limit = DVec3::blend(&weights.map(|(i, w)| (i as u32, w)).collect::<Vec<_>>(), &positions);
             prop_assert!(limit.distance(expected.position) < 1e-12 * (1.0 + expected.position.length()));
         }
         for (_, ring) in rings(truth.topology()) {

@@ -2,11 +2,14 @@
 
 mod checks;
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use crate::error::Result;
 use crate::mesh::Scheme;
 use crate::mesh::creased_edges::CreasedEdges;
+use crate::mesh::faces::Faces;
 use crate::mesh::placement::{Placement, bounds};
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
@@ -88,8 +91,7 @@ pub struct FaceVarying {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlMesh {
     positions: Vec<DVec3>,
-    face_offsets: Vec<u32>,
-    face_vertices: Vec<u32>,
+    faces: Arc<Faces>,
     creases: Vec<Crease>,
     corners: Vec<Corner>,
     holes: Vec<u32>,
@@ -110,6 +112,7 @@ pub struct ControlMesh {
 pub struct ControlMeshBuilder {
     mesh: ControlMesh,
     face_sizes: Vec<u32>,
+    face_vertices: Vec<u32>,
 }
 
 impl ControlMesh {
@@ -138,25 +141,27 @@ impl ControlMesh {
 
     /// The number of faces, holes included.
     pub fn face_count(&self) -> usize {
-        self.face_offsets.len() - 1
+        self.faces.len()
     }
 
     /// The vertices of face `face`, in file order; none where there is no such face.
     pub fn face(&self, face: usize) -> &[u32] {
-        &self.face_vertices[self.corner_range(face)]
+        self.faces.get(face)
     }
 
     /// Where the corners of face `face` stand in arrays with one entry a face corner; nowhere if there is no such face.
     pub fn corner_range(&self, face: usize) -> std::ops::Range<usize> {
-        match self.face_offsets.get(face..) {
-            Some(&[start, end, ..]) => start as usize..end as usize,
-            _ => 0..0,
-        }
+        self.faces.range(face)
     }
 
     /// The vertices of every face in file order.
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
-        (0..self.face_count()).map(|face| self.face(face))
+        self.faces.iter()
+    }
+
+    /// The faces, for those who keep them.
+    pub(crate) fn shared_faces(&self) -> &Arc<Faces> {
+        &self.faces
     }
 
     /// The creased edges, as given.
@@ -231,7 +236,7 @@ impl ControlMesh {
 
     /// The positions of the vertices that faces use, one for each corner of a face.
     fn used_positions(&self) -> impl Iterator<Item = DVec3> {
-        let corners = self.face_vertices.iter();
+        let corners = self.faces.vertices().iter();
         corners.map(|&vertex| self.positions[vertex as usize])
     }
 }
@@ -245,10 +250,10 @@ impl ControlMeshBuilder {
     ) -> ControlMeshBuilder {
         ControlMeshBuilder {
             face_sizes,
+            face_vertices,
             mesh: ControlMesh {
                 positions,
-                face_offsets: Vec::new(),
-                face_vertices,
+                faces: Arc::default(),
                 creases: Vec::new(),
                 corners: Vec::new(),
                 holes: Vec::new(),
@@ -307,8 +312,10 @@ impl ControlMeshBuilder {
         let ControlMeshBuilder {
             mut mesh,
             face_sizes,
+            face_vertices,
         } = self;
-        mesh.face_offsets = checks::offsets(&face_sizes, mesh.face_vertices.len())?;
+        let offsets = checks::offsets(&face_sizes, face_vertices.len())?;
+        mesh.faces = Faces::new(offsets, face_vertices).into();
         checks::check_faces(&mesh)?;
         checks::check_positions(&mesh)?;
         checks::check_tags(&mesh)?;

@@ -3,6 +3,7 @@
 mod builtin;
 mod control_mesh;
 mod creased_edges;
+pub(crate) mod faces;
 mod model;
 mod obj;
 mod placement;

@@ -5,16 +5,20 @@
 //! become infinitely sharp, and so do non-manifold vertices other than those on a plain non-manifold crease.
 
 mod connect;
+mod manifold;
 #[cfg(test)]
 mod tests;
+
+use std::sync::Arc;
 
 use smallvec::SmallVec;
 
 use crate::mesh::control_mesh::creased_edges;
+use crate::mesh::faces::Faces;
 use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
-use connect::{Lists, list};
+use connect::Lists;
 
 /// An edge and how sharp it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,19 +27,12 @@ pub struct Edge {
     pub vertices: [u32; 2],
     /// Sharpness at this level.
     pub sharpness: f32,
-    /// Sharpness, at the next level, of the half at each end. The two differ only under Chaikin's rule.
-    pub next: [f32; 2],
 }
 
 impl Edge {
     /// The end that is not `vertex`.
     pub fn other(&self, vertex: u32) -> u32 {
         self.vertices[0] ^ self.vertices[1] ^ vertex
-    }
-
-    /// Sharpness at the next level of the half that ends in `vertex`.
-    pub fn next_at(&self, vertex: u32) -> f32 {
-        self.next[usize::from(self.vertices[1] == vertex)]
     }
 }
 
@@ -53,10 +50,11 @@ pub struct FaceCorner {
 /// What is asked of a number that no face, edge or vertex has is answered as of one that touches nothing: by an empty list, no sharpness, no hole.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    face_offsets: Vec<u32>,
-    face_vertices: Vec<u32>,
+    faces: Arc<Faces>,
     face_edges: Vec<u32>,
     edges: Vec<Edge>,
+    /// Sharpness, at the next level, of each edge's half at either end, which differ only under Chaikin's rule; empty where all are smooth.
+    next: Vec<[f32; 2]>,
     edge_faces: Lists<u32>,
     vertex_faces: Lists<FaceCorner>,
     vertex_edges: Lists<u32>,
@@ -82,11 +80,16 @@ impl Topology {
         for corner in mesh.corners() {
             vertex_sharpness[corner.vertex as usize] = clamp(corner.sharpness);
         }
-        let mut topology = Topology::connect(mesh.faces(), vertex_sharpness, options, |a, b| {
-            let crease = creased.crease([a, b]);
-            let sharpness = crease.map_or(0.0, |crease| mesh.creases()[crease].sharpness);
-            (clamp(sharpness), [0.0; 2])
-        });
+        let mut topology = Topology::of_faces(
+            mesh.shared_faces().clone(),
+            vertex_sharpness,
+            options,
+            |a, b| {
+                let crease = creased.crease([a, b]);
+                let sharpness = crease.map_or(0.0, |crease| mesh.creases()[crease].sharpness);
+                (clamp(sharpness), [0.0; 2])
+            },
+        );
         for &hole in mesh.holes() {
             topology.holes[hole as usize] = true;
         }
@@ -111,29 +114,12 @@ impl Topology {
             && self.options.scheme != Scheme::Bilinear
     }
 
-    /// Sharp corners and non-manifold places, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
-    fn sharpen_non_manifold(&mut self) {
-        let manifold: Vec<bool> = (0..self.edges.len() as u32)
-            .map(|edge| self.is_manifold_edge(edge))
-            .collect();
-        for (edge, _) in self.edges.iter_mut().zip(&manifold).filter(|pair| !pair.1) {
-            edge.sharpness = INFINITE_SHARPNESS;
-        }
-        for vertex in 0..self.vertex_count() as u32 {
-            if self.is_interpolated_corner(vertex) || self.is_non_manifold_corner(vertex, &manifold)
-            {
-                self.vertex_sharpness[vertex as usize] = INFINITE_SHARPNESS;
-            }
-        }
-    }
-
     /// Boundary edges are infinitely sharp, now and for ever.
     fn sharpen_boundaries(&mut self) {
         for number in 0..self.edges.len() {
             if self.edge_faces.get(number as u32).len() < 2 {
-                let edge = &mut self.edges[number];
-                edge.sharpness = INFINITE_SHARPNESS;
-                edge.next = [INFINITE_SHARPNESS; 2];
+                self.edges[number].sharpness = INFINITE_SHARPNESS;
+                self.set_next(number as u32, [INFINITE_SHARPNESS; 2]);
             }
         }
     }
@@ -154,98 +140,33 @@ impl Topology {
         }
     }
 
-    /// Whether an edge has at most two faces, and two walk it in opposite directions.
-    fn is_manifold_edge(&self, edge: u32) -> bool {
-        let [a, _] = self.edges[edge as usize].vertices;
-        let forward = |&face: &u32| self.edges_at(face, a)[0] == edge;
-        match self.edge_faces.get(edge) {
-            [] | [_] => true,
-            [first, second] => forward(first) != forward(second),
-            _ => false,
-        }
-    }
-
-    fn is_interpolated_corner(&self, vertex: u32) -> bool {
-        self.options.boundary == BoundaryInterpolation::EdgeAndCorner
-            && self.vertex_faces.get(vertex).len() == 1
-            && self.vertex_edges.get(vertex).len() == 2
-    }
-
-    /// A non-manifold vertex is a corner, unless it merely lies on a crease inside the mesh: two edges of more than two faces, between which
-    /// each fan of faces around the vertex spans. (OpenSubdiv 3.5 only counted faces and edges; pull request 1338 mended it.)
-    fn is_non_manifold_corner(&self, vertex: u32, manifold: &[bool]) -> bool {
-        let (edges, faces) = (self.vertex_edges.get(vertex), self.vertex_faces.get(vertex));
-        let is_boundary = |&edge: &u32| self.edge_faces.get(edge).len() < 2;
-        let non_manifold = edges.iter().copied().filter(|&e| !manifold[e as usize]);
-        match non_manifold.collect::<SmallVec<[u32; 4]>>()[..] {
-            [] => !faces.is_empty() && !self.is_single_fan(vertex, manifold),
-            [from, to] if faces.len() > edges.len() && !edges.iter().any(is_boundary) => {
-                !self.fans_span(vertex, [from, to], manifold)
-            }
-            _ => true,
-        }
-    }
-
-    /// Whether the faces around `vertex` hang together across its edges, all of which are manifold.
-    fn is_single_fan(&self, vertex: u32, manifold: &[bool]) -> bool {
-        let corners = self.vertex_faces.get(vertex);
-        let face = corners[0].face;
-        let [a, b] = self.edges_at(face, vertex);
-        let (mut met, end) = self.sweep(vertex, face, a, manifold);
-        if end != a {
-            met += self.sweep(vertex, face, b, manifold).0 - 1;
-        }
-        met == corners.len()
-    }
-
-    /// Whether all fans of faces around `vertex` lead from one of two edges to the other, the only ones there that are no plain inner edges.
-    fn fans_span(&self, vertex: u32, [from, to]: [u32; 2], manifold: &[bool]) -> bool {
-        let mut met = 0;
-        for &face in self.edge_faces.get(from) {
-            let (faces, end) = self.sweep(vertex, face, from, manifold);
-            if end != to {
-                return false;
-            }
-            met += faces;
-        }
-        met == self.vertex_faces.get(vertex).len()
-    }
-
-    /// The number of faces around `vertex` that follow each other from `face` on, away from its edge `from`, and the edge at which they end: `from` itself
-    /// where they close.
-    fn sweep(&self, vertex: u32, face: u32, from: u32, manifold: &[bool]) -> (usize, u32) {
-        let [a, b] = self.edges_at(face, vertex);
-        let mut at = (face, if a == from { b } else { a });
-        let mut met = 1;
-        while at.1 != from && manifold[at.1 as usize] {
-            let Some(next) = self.step(vertex, at.0, at.1) else {
-                break;
-            };
-            at = next;
-            met += 1;
-        }
-        (met, at.1)
-    }
-
     /// Computes each edge's sharpness at the next level.
     fn foresee(&mut self) {
-        for vertex in 0..self.vertex_count() as u32 {
+        let mut at_sharp = vec![false; self.vertex_count()];
+        for edge in self.edges.iter().filter(|edge| is_sharp(edge.sharpness)) {
+            for vertex in edge.vertices {
+                at_sharp[vertex as usize] = true;
+            }
+        }
+        let all = 0..self.vertex_count() as u32;
+        for vertex in all.filter(|&vertex| at_sharp[vertex as usize]) {
             let around = self.vertex_edges.get(vertex);
             let sharpness = around
                 .iter()
                 .map(|&edge| self.edges[edge as usize].sharpness);
             let sharpness: SmallVec<[f32; 8]> = sharpness.collect();
             let next = decayed_around_vertex(self.options.creasing, &sharpness);
+            self.next.resize(self.edges.len(), [0.0; 2]);
             for (&edge, next) in around.iter().zip(next) {
-                let edge = &mut self.edges[edge as usize];
-                edge.next[usize::from(edge.vertices[1] == vertex)] = next;
+                let end = self.edges[edge as usize].vertices[1] == vertex;
+                self.next[edge as usize][usize::from(end)] = next;
             }
         }
     }
 
     /// The number of faces.
     pub fn face_count(&self) -> usize {
-        self.face_offsets.len().saturating_sub(1)
+        self.faces.len()
     }
 
     /// The number of vertices.
@@ -260,12 +181,27 @@ impl Topology {
 
     /// The vertices of a face.
     pub fn face(&self, face: u32) -> &[u32] {
-        list(&self.face_offsets, &self.face_vertices, face)
+        self.faces.get(face as usize)
+    }
+
+    /// The faces, for those who keep them.
+    pub(crate) fn shared_faces(&self) -> &Arc<Faces> {
+        &self.faces
+    }
+
+    /// The number, among the sides of all faces, of that which begins at a corner of a face.
+    pub(crate) fn side(&self, face: u32, corner: u32) -> u32 {
+        self.faces.range(face as usize).start as u32 + corner
+    }
+
+    /// The vertices of all faces one after another, if all are quads.
+    pub(crate) fn quads(&self) -> Option<&[u32]> {
+        self.faces.quads()
     }
 
     /// The edges of a face; edge i joins its vertices i and i + 1.
     pub fn face_edges(&self, face: u32) -> &[u32] {
-        list(&self.face_offsets, &self.face_edges, face)
+        &self.face_edges[self.faces.range(face as usize)]
     }
 
     /// The edges by number.
@@ -276,6 +212,24 @@ impl Topology {
     /// An edge by number, which must be one.
     pub(crate) fn edge(&self, edge: u32) -> &Edge {
         &self.edges[edge as usize]
+    }
+
+    /// Sharpness, at the next level, of the half of an edge at each of its ends. The two differ only under Chaikin's rule.
+    pub fn next_sharpness(&self, edge: u32) -> [f32; 2] {
+        self.next.get(edge as usize).copied().unwrap_or_default()
+    }
+
+    /// Sharpness, at the next level, of the half of an edge that ends in `vertex`.
+    pub(crate) fn next_at(&self, edge: u32, vertex: u32) -> f32 {
+        let end = self.edge(edge).vertices[1] == vertex;
+        self.next_sharpness(edge)[usize::from(end)]
+    }
+
+    fn set_next(&mut self, edge: u32, next: [f32; 2]) {
+        if next != self.next_sharpness(edge) {
+            self.next.resize(self.edges.len(), [0.0; 2]);
+            self.next[edge as usize] = next;
+        }
     }
 
     /// The faces on an edge.
@@ -413,6 +367,28 @@ impl Topology {
             None
         } else {
             self.step(fan.vertex, face, edge)
+        }
+    }
+
+    /// Writes down all that tells it from other topologies under the same scheme and boundary rule.
+    pub(crate) fn write_down(&self, words: &mut Vec<u32>) {
+        let options = self.options;
+        words.extend([options.creasing as u32, options.triangles as u32]);
+        words.extend([self.face_count() as u32, self.vertex_count() as u32]);
+        if self.quads().is_none() {
+            words.extend(self.faces.iter().map(|face| face.len() as u32));
+        }
+        words.extend_from_slice(self.faces.vertices());
+        let sharp = |(number, sharpness): (u32, &f32)| [number, sharpness.to_bits()];
+        let vertices = (0..).zip(&self.vertex_sharpness);
+        let vertices = vertices.filter(|vertex| is_sharp(*vertex.1));
+        words.extend(vertices.flat_map(sharp));
+        for (number, edge) in (0..).zip(&self.edges) {
+            let next = self.next_sharpness(number);
+            if is_sharp(edge.sharpness) || next != [0.0; 2] {
+                let [near, far] = next.map(f32::to_bits);
+                words.extend([u32::MAX, number, edge.sharpness.to_bits(), near, far]);
+            }
         }
     }
 

@@ -188,8 +188,10 @@ impl Method {
         prepared.method = self.name;
         prepared.outline = Outline::new(model.topology());
         prepared.origin = Origin::new(model);
-        for pass in &mut prepared.passes {
-            pass.sides = outline::sides_of(model, &pass.patches);
+        let patches = prepared.passes.iter().map(|pass| &pass.patches[..]);
+        let sides = outline::sides_of(model, patches);
+        for (pass, sides) in prepared.passes.iter_mut().zip(sides) {
+            pass.sides = sides;
             pass.needs = [model.mesh().vertex_count(), prepared.points.count as usize];
         }
         Ok(prepared)

@@ -1,7 +1,9 @@
 //! What something was prepared of.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+use rustc_hash::FxHasher;
 
 use crate::mesh::Model;
 
@@ -36,7 +38,7 @@ impl Origin {
 /// a comparison will do.
 fn fingerprint(model: &Model) -> u64 {
     let mesh = model.mesh();
-    let mut hasher = DefaultHasher::new();
+    let mut hasher = FxHasher::default();
     mesh.options().hash(&mut hasher);
     mesh.faces().for_each(|face| face.hash(&mut hasher));
     for crease in mesh.creases() {

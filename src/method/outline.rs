@@ -1,14 +1,17 @@
 //! The edges and faces of the control mesh, to which the edges of patches belong: levels that go by them agree on both sides of each.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
-use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::mesh::Model;
+use crate::mesh::faces::Faces;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
 use crate::method::ptex::{Child, child};
+use crate::tessellation::Domain;
 
 /// The edges and faces of a control mesh. Both count as sides, edges first: a patch's edge is a part of one of its mesh's edges, or lies within
 /// one of its faces.
@@ -16,9 +19,7 @@ use crate::method::ptex::{Child, child};
 pub struct Outline {
     /// The control vertices of each edge.
     edges: Vec<[u32; 2]>,
-    /// The vertices of each face in turn, and of all faces one after the other.
-    face_vertices: Vec<u32>,
-    face_ends: Vec<usize>,
+    faces: Arc<Faces>,
     vertices: usize,
 }
 
@@ -26,16 +27,11 @@ impl Outline {
     /// The outline of a control mesh.
     pub(super) fn new(topology: &Topology) -> Outline {
         let ends = |edge| topology.edge(edge).vertices;
-        let mut outline = Outline {
+        Outline {
             edges: (0..topology.edge_count() as u32).map(ends).collect(),
+            faces: topology.shared_faces().clone(),
             vertices: topology.vertex_count(),
-            ..Outline::default()
-        };
-        for face in 0..topology.face_count() as u32 {
-            outline.face_vertices.extend_from_slice(topology.face(face));
-            outline.face_ends.push(outline.face_vertices.len());
         }
-        outline
     }
 
     /// The depth of each side, by one a control vertex: of an edge the greater of its ends', of a face the greatest of its edges'.
@@ -49,7 +45,7 @@ impl Outline {
             tags.fold(0.0, f32::max)
         };
         let edges = self.edges.iter().map(|ends| greatest(ends));
-        Ok(edges.chain(self.faces().map(greatest)).collect())
+        Ok(edges.chain(self.faces.iter().map(greatest)).collect())
     }
 
     /// Refuses lists that have not one entry a control vertex.
@@ -70,21 +66,11 @@ impl Outline {
         &self.edges
     }
 
-    /// The vertices of each face.
-    fn faces(&self) -> impl Iterator<Item = &[u32]> {
-        let mut start = 0;
-        self.face_ends.iter().map(move |&end| {
-            let face = &self.face_vertices[start..end];
-            start = end;
-            face
-        })
-    }
-
     /// Unit normals of the vertices: of the faces around each, by their areas.
     pub(super) fn normals(&self, vertices: &[Vec3]) -> Vec<Vec3> {
         // In f64 products of floats stay within its range.
         let mut normals = vec![DVec3::ZERO; vertices.len()];
-        for face in self.faces() {
+        for face in self.faces.iter() {
             let at = |i: usize| vertices[face[i % face.len()] as usize].as_dvec3();
             // Twice the area as a vector, whatever the polygon (Newell).
             let area = (0..face.len()).fold(DVec3::ZERO, |sum, i| {
@@ -128,12 +114,33 @@ fn sides(topology: &Topology, part: Part, patch: &abi::Patch) -> [u32; 4] {
     })
 }
 
-/// The sides of all patches of a pass.
-pub(super) fn sides_of(model: &Model, patches: &[abi::Patch]) -> Vec<[u32; 4]> {
-    let parts: FxHashMap<u32, Part> = patches::parts(model)
-        .into_iter()
-        .map(|part| (part.ptex, part))
-        .collect();
-    let side = |patch: &abi::Patch| sides(model.topology(), parts[&patch.ptex], patch);
-    patches.iter().map(side).collect()
+/// The sides of all patches of each pass.
+pub(super) fn sides_of<'a>(
+    model: &Model,
+    passes: impl Iterator<Item = &'a [abi::Patch]>,
+) -> Vec<Vec<[u32; 4]>> {
+    let whole = model.mesh().options().scheme.is_whole(4);
+    if whole && model.topology().quads().is_some() {
+        let part = |patch: &abi::Patch| Part {
+            domain: Domain::Quads,
+            face: patch.ptex,
+            corner: 0,
+            ptex: patch.ptex,
+        };
+        let side = |patch: &abi::Patch| sides(model.topology(), part(patch), patch);
+        return passes
+            .map(|patches| patches.iter().map(side).collect())
+            .collect();
+    }
+    let parts = patches::parts(model);
+    let last = parts.last().map_or(0, |part| part.ptex as usize + 1);
+    let mut places = vec![0; last];
+    for (place, part) in (0u32..).zip(&parts) {
+        places[part.ptex as usize] = place;
+    }
+    let part = |patch: &abi::Patch| parts[places[patch.ptex as usize] as usize];
+    let side = |patch: &abi::Patch| sides(model.topology(), part(patch), patch);
+    passes
+        .map(|patches| patches.iter().map(side).collect())
+        .collect()
 }

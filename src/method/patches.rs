@@ -1,6 +1,8 @@
 //! What every method's patches have in common: one a triangle or quad that the scheme takes whole, one a corner of other faces, with their
 //! flags, valences and texture coordinates.
 
+use smallvec::SmallVec;
+
 use crate::abi;
 use crate::mesh::Model;
 use crate::tessellation::Domain;
@@ -55,7 +57,9 @@ pub fn patch(model: &Model, part: Part, turn: u32) -> abi::Patch {
     } else if vertices.len() == 4 {
         let corners: [u32; 4] = std::array::from_fn(|i| (turn + i as u32) % 4);
         let edge = |corner: u32| topology.face_edges(part.face)[corner as usize];
-        let even = (0..4).filter(|&i| touches_parts(model, edge(corners[i])));
+        let whole = topology.quads().is_some() && model.mesh().options().scheme.is_whole(4);
+        let sides = 0..if whole { 0 } else { 4 };
+        let even = sides.filter(|&i| touches_parts(model, edge(corners[i])));
         let even: u32 = even.map(|i| abi::PATCH_EVEN_EDGE << i).sum();
         let valences = corners.map(|corner| topology.vertex_edges(vertices[corner as usize]).len());
         (even | turn << abi::PATCH_TURN_SHIFT, valences)
@@ -90,7 +94,7 @@ pub fn texture(model: &Model, part: Part, turn: u32) -> [[f32; 2]; 4] {
         None => own,
         Some(texture) => {
             let indices = &texture.indices[mesh.corner_range(part.face as usize)];
-            let values: Vec<glam::DVec2> = indices
+            let values: SmallVec<[glam::DVec2; 4]> = indices
                 .iter()
                 .map(|&index| texture.values[index as usize])
                 .collect();

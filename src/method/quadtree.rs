@@ -17,6 +17,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::Result;
@@ -25,15 +26,17 @@ use crate::mesh::{Model, Scheme};
 use crate::method::patches::{self, Part};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
 use crate::plan::database::Kind;
-use crate::plan::{Database, NodeKind, PackedPlans, Plan, PlanOptions, Ring};
-use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch};
+use crate::plan::{
+    Configuration, Database, NodeKind, PackedPlans, Plan, PlanOptions, Ring, SmoothQuads,
+    SmoothRing, SmoothStart,
+};
 use crate::tessellation::Domain;
 
 use border::{Borders, Given};
 #[cfg(feature = "host")]
 pub(crate) use twin::node_kind;
 
-use irregular::Irregular;
+use irregular::{Irregulars, Record, order, push_ring};
 use plain::is_turned_corner;
 use subjects::Planned;
 
@@ -91,44 +94,83 @@ pub struct PlanStatistics {
 }
 
 /// A part on its way to a patch.
+struct Found {
+    patch: abi::Patch,
+    texture: [[f32; 2]; 4],
+    surroundings: Surroundings,
+}
+
+/// What a part's limit depends on.
 enum Surroundings {
-    Regular(Part, [u32; 16]),
-    Irregular(Part, Ring),
+    Regular([u32; 16]),
+    Smooth(SmoothStart, SmoothRing),
+    Irregular(Box<Ring>),
+}
+
+/// So many parts are on their way at a time.
+const AT_A_TIME: usize = 1 << 13;
+/// Most short rings and their orders take less.
+const RING: usize = 36;
+
+/// Makes room for patches of so many control vertices.
+fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
+    pass.patches.reserve_exact(patches);
+    pass.texture.reserve_exact(patches);
+    pass.controls.reserve_exact(patches * controls);
 }
 
 fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result<Prepared> {
     let options = options.plans.check()?;
     let started = Instant::now();
-    let topology = model.topology();
-    let found: Vec<Surroundings> = patches::parts(model)
-        .into_par_iter()
-        .map(|part| surroundings(topology, part))
-        .collect();
+    let smooth = SmoothQuads::new(model.topology());
     let mut regular = pass("quadtree_regular", 16, twin::regular, options);
-    let (mut rings, mut long_rings) = (Vec::new(), Vec::new());
-    for part in found {
-        match part {
-            Surroundings::Regular(part, vertices) => {
-                let flags = turned_corners(topology, part.face);
-                add(&mut regular, model, part, 0, &vertices).flags |= flags;
-            }
-            Surroundings::Irregular(part, ring) => {
-                let fits = ring.vertices.len() <= abi::CONTROL_INVOCATIONS as usize;
-                let rings = if fits { &mut rings } else { &mut long_rings };
-                rings.push((part, ring));
-            }
+    let [mut short, mut long] =
+        ["quadtree", "quadtree_long"].map(|shader| Planning::new(shader, options));
+    let parts = patches::parts(model);
+    let is_regular = |part: &&Part| smooth.is_regular(part.face);
+    let regular_count = parts.iter().filter(is_regular).count();
+    reserve(&mut regular, regular_count, 16);
+    reserve(&mut short.pass, parts.len() - regular_count, RING);
+    let mut all = Vec::with_capacity(AT_A_TIME.min(parts.len()));
+    for parts in parts.chunks(AT_A_TIME) {
+        let found = parts.par_iter().map(|&part| found(model, &smooth, part));
+        found.collect_into_vec(&mut all);
+        for (&part, found) in parts.iter().zip(all.drain(..)) {
+            let Found {
+                mut patch,
+                texture,
+                surroundings,
+            } = found;
+            let planning = match &surroundings {
+                Surroundings::Regular(vertices) => {
+                    patch.controls = regular.controls.len() as u32;
+                    regular.controls.extend_from_slice(vertices);
+                    regular.patches.push(patch);
+                    regular.texture.push(texture);
+                    continue;
+                }
+                Surroundings::Irregular(ring)
+                    if ring.vertices.len() > abi::CONTROL_INVOCATIONS as usize =>
+                {
+                    &mut long
+                }
+                _ => &mut short,
+            };
+            planning.add(model.topology(), part, patch, texture, surroundings);
         }
     }
+    drop((parts, all));
     let mut plans = PlanStatistics {
         regular: regular.patches.len(),
         vertex_bytes: size_of::<Vec3>() * model.mesh().vertex_count(),
         index_bytes: size_of_val(&regular.controls[..]),
         ..PlanStatistics::default()
     };
+    let topology = model.topology();
     let mut irregular =
-        |shader, rings| irregular(model, shader, rings, options, database, &mut plans);
-    let short = irregular("quadtree", rings)?;
-    let long = irregular("quadtree_long", long_rings)?;
+        |planning| irregular(topology, &smooth, planning, options, database, &mut plans);
+    let short = irregular(short)?;
+    let long = irregular(long)?;
     plans.build_seconds = started.elapsed().as_secs_f64();
     Ok(Prepared {
         plans: Some(plans),
@@ -137,24 +179,145 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     })
 }
 
+fn found(model: &Model, smooth: &SmoothQuads<'_>, part: Part) -> Found {
+    let topology = model.topology();
+    let surroundings = surroundings(topology, smooth, part);
+    let quad = topology.face(part.face).len() == 4;
+    let turn = match &surroundings {
+        Surroundings::Smooth(start, _) => start.corner,
+        Surroundings::Irregular(ring) if quad => ring.start,
+        _ => 0,
+    };
+    let mut patch = patches::patch(model, part, turn);
+    patch.flags |= match &surroundings {
+        Surroundings::Regular(_) => turned_corners(topology, smooth, part.face),
+        Surroundings::Smooth(start, ring) => ring_flags(ring.vertices(), start.mirrored),
+        Surroundings::Irregular(ring) => ring_flags(&ring.vertices, ring.mirrored),
+    };
+    Found {
+        patch,
+        texture: patches::texture(model, part, turn),
+        surroundings,
+    }
+}
+
+fn ring_flags(vertices: &[u32], mirrored: bool) -> u32 {
+    let size = (vertices.len() as u32).min(abi::CONTROL_INVOCATIONS);
+    let mirrored = if mirrored { abi::PATCH_MIRRORED } else { 0 };
+    size << abi::PATCH_RING_SHIFT | mirrored
+}
+
+fn surroundings(topology: &Topology, smooth: &SmoothQuads<'_>, part: Part) -> Surroundings {
+    let face = part.face;
+    if let Some(vertices) = smooth.regular(face) {
+        return Surroundings::Regular(vertices);
+    }
+    let found = smooth.start(face);
+    if let Some((start, ring)) = found.and_then(|start| Some((start, smooth.ring(face, start)?))) {
+        return Surroundings::Smooth(start, ring);
+    }
+    let ring = match topology.face(face).len() {
+        4 => Ring::of_quad(topology, face),
+        _ => Ring::of_part(topology, face, part.corner),
+    };
+    Surroundings::Irregular(ring.expect("parts are the topology's own").into())
+}
+
+/// Irregular patches on their way to a pass, and the different configurations that they have.
+struct Planning {
+    pass: Pass,
+    records: Vec<Record>,
+    numbers: FxHashMap<Configuration, u32>,
+    /// Those of smooth rings, by their keys.
+    smooth: FxHashMap<u32, u32>,
+}
+
+impl Planning {
+    fn new(shader: &'static str, options: PlanOptions) -> Planning {
+        Planning {
+            pass: pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options),
+            records: Vec::new(),
+            numbers: FxHashMap::default(),
+            smooth: FxHashMap::default(),
+        }
+    }
+
+    fn add(
+        &mut self,
+        topology: &Topology,
+        part: Part,
+        mut patch: abi::Patch,
+        texture: [[f32; 2]; 4],
+        surroundings: Surroundings,
+    ) {
+        let pass = &mut self.pass;
+        patch.controls = pass.controls.len() as u32;
+        pass.patches.push(patch);
+        pass.texture.push(texture);
+        let next = self.numbers.len() as u32;
+        let mut number = |configuration| *self.numbers.entry(configuration).or_insert(next);
+        let record = match surroundings {
+            Surroundings::Regular(_) => unreachable!("it needs no plan"),
+            Surroundings::Smooth(start, ring) => {
+                let order = ring.order().iter().copied().map(u16::from);
+                push_ring(&mut pass.controls, ring.vertices(), order);
+                let plan = self.smooth.entry(start.key).or_insert_with(|| {
+                    let ring = Ring::of_quad(topology, part.face);
+                    number(ring.expect("a smooth face is a quad").configuration)
+                });
+                Record {
+                    part,
+                    plan: *plan,
+                    ring_size: ring.vertices().len() as u32,
+                    start: start.corner as u8,
+                    mirrored: start.mirrored,
+                    is_smooth: true,
+                }
+            }
+            Surroundings::Irregular(ring) => {
+                push_ring(
+                    &mut pass.controls,
+                    &ring.vertices,
+                    order(&ring.vertices).into_iter(),
+                );
+                Record {
+                    part,
+                    plan: number(ring.configuration),
+                    ring_size: ring.vertices.len() as u32,
+                    start: ring.start as u8,
+                    mirrored: ring.mirrored,
+                    is_smooth: false,
+                }
+            }
+        };
+        self.records.push(record);
+    }
+}
+
 /// The pass of the patches that need plans. Those with long rings have shaders of their own, which need not pay for others.
 fn irregular(
-    model: &Model,
-    shader: &'static str,
-    rings: Vec<(Part, Ring)>,
+    topology: &Topology,
+    smooth: &SmoothQuads<'_>,
+    planning: Planning,
     options: PlanOptions,
     database: &Database,
     statistics: &mut PlanStatistics,
 ) -> Result<Pass> {
-    let topology = model.topology();
-    let mut pass = pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options);
+    let Planning {
+        mut pass,
+        records,
+        numbers,
+        ..
+    } = planning;
     pass.cached = Some("quadtree_cached");
-    let kinds = rings
-        .iter()
-        .map(|(_, ring)| (Kind::Inside, &ring.configuration));
-    let Planned { numbers, plans } = Planned::new(kinds, options, database)?;
-    let irregular = |((part, ring), plan)| Irregular::new(part, ring, plan);
-    let patches: Vec<Irregular> = rings.into_iter().zip(numbers).map(irregular).collect();
+    pass.patches.shrink_to_fit();
+    pass.texture.shrink_to_fit();
+    pass.controls.shrink_to_fit();
+    let mut configurations: Vec<(Configuration, u32)> = numbers.into_iter().collect();
+    configurations.sort_unstable_by_key(|&(_, number)| number);
+    let kinds = configurations.iter().map(|(all, _)| (Kind::Inside, all));
+    let Planned { plans, .. } = Planned::new(kinds, options, database)?;
+    drop(configurations);
     let mut packed = PackedPlans::default();
     for plan in &plans {
         packed.push(plan.plan())?;
@@ -169,24 +332,20 @@ fn irregular(
     }
     let inside_bytes = packed.quadtree_bytes();
     let insides: Vec<&Plan> = plans.iter().map(|plan| plan.plan()).collect();
+    let patches = Irregulars {
+        records: &records,
+        pass: &pass,
+    };
     let given = Given {
         topology,
+        smooth,
         patches: &patches,
         plans: &insides,
     };
     let borders = Borders::new(given, &mut packed, options, database)?;
-    for (patch, &border) in patches.iter().zip(&borders.numbers) {
-        let turn = patch.turn(topology);
-        let vertices = &patch.ring.vertices;
-        let record = add(&mut pass, model, patch.part, turn, vertices);
-        record.plan = border;
-        let ring = (vertices.len() as u32).min(abi::CONTROL_INVOCATIONS);
-        record.flags |= ring << abi::PATCH_RING_SHIFT;
-        if patch.ring.mirrored {
-            record.flags |= abi::PATCH_MIRRORED;
-        }
-        let order: Vec<u32> = patch.order.iter().map(|&place| place.into()).collect();
-        pass.controls.extend(places::pack(order.len(), &order));
+    drop(records);
+    for (patch, &border) in pass.patches.iter_mut().zip(&borders.numbers) {
+        patch.plan = border;
     }
     let (records, uses) = with_places(&mut pass, &borders);
     let sums = records
@@ -244,10 +403,14 @@ fn sums(border: &abi::Border, uses: &[abi::Use], ends: &[abi::Ends]) -> (Levels<
 
 impl PlanStatistics {
     fn add_points(&mut self, pass: &Pass) {
+        // How many patches have each border.
+        let mut counts = vec![0u64; pass.scratch_points.len()];
+        for patch in &pass.patches {
+            counts[patch.plan as usize] += 1;
+        }
         let points = |level: u32| -> u64 {
-            let patches = 0..pass.patches.len();
-            patches
-                .map(|patch| u64::from(pass.points(patch, level)))
+            let all = counts.iter().zip(&pass.scratch_points);
+            all.map(|(count, points)| count * u64::from(points[level as usize]))
                 .sum()
         };
         self.irregular += pass.patches.len();
@@ -275,8 +438,9 @@ fn with_places(pass: &mut Pass, borders: &Borders) -> (Vec<abi::Border>, Vec<abi
 }
 
 /// The flags of a regular patch's corners at which sums go along v first.
-fn turned_corners(topology: &Topology, face: u32) -> u32 {
-    let turned = |&corner: &u32| is_turned_corner(topology, face, corner) != (corner % 2 == 1);
+fn turned_corners(topology: &Topology, smooth: &SmoothQuads<'_>, face: u32) -> u32 {
+    let turned =
+        |&corner: &u32| is_turned_corner(topology, smooth, face, corner) != (corner % 2 == 1);
     let corners = (0..4).filter(turned);
     corners
         .map(|corner| abi::PATCH_TURNED_CORNER << corner)
@@ -293,48 +457,6 @@ fn pass(
         max_level: options.max_level,
         ..Pass::new(shader, Domain::Quads, control_points, twin)
     }
-}
-
-fn surroundings(topology: &Topology, part: Part) -> Surroundings {
-    let plain = bspline_patch(topology, part.face)
-        .as_ref()
-        .and_then(plain_vertices);
-    if let Some(vertices) = plain {
-        return Surroundings::Regular(part, vertices);
-    }
-    let quad = topology.face(part.face).len() == 4;
-    let ring = match quad {
-        true => Ring::of_quad(topology, part.face),
-        false => Ring::of_part(topology, part.face, part.corner),
-    };
-    Surroundings::Irregular(part, ring.expect("parts are the topology's own"))
-}
-
-/// The vertices of a B-spline patch that has neither crease nor mirrored points.
-fn plain_vertices(patch: &BsplinePatch) -> Option<[u32; 16]> {
-    let vertex = |point: ControlPoint| {
-        if let ControlPoint::Vertex(vertex) = point {
-            vertex
-        } else {
-            u32::MAX
-        }
-    };
-    (patch.crease.is_none() && !patch.mirrored).then(|| patch.points.map(vertex))
-}
-
-fn add<'a>(
-    pass: &'a mut Pass,
-    model: &Model,
-    part: Part,
-    turn: u32,
-    vertices: &[u32],
-) -> &'a mut abi::Patch {
-    let mut patch = patches::patch(model, part, turn);
-    patch.controls = pass.controls.len() as u32;
-    pass.controls.extend_from_slice(vertices);
-    pass.texture.push(patches::texture(model, part, turn));
-    pass.patches.push(patch);
-    pass.patches.last_mut().expect("it was just pushed")
 }
 
 const NODE_KINDS: [NodeKind; 6] = [

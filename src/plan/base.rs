@@ -29,9 +29,9 @@ impl Bases {
         }
     }
 
-    /// The rows of a plan before anything else is pushed: room for the bases.
-    pub fn rows(&self, width: usize) -> Rows {
-        Rows::zero(width, self.weights.len())
+    /// The rows of a plan before anything else is pushed, in the memory of others: room for the bases.
+    pub fn rows(&self, memory: Vec<f64>, width: usize) -> Rows {
+        Rows::zero_in(memory, width, self.weights.len())
     }
 
     /// Tells what a base is.

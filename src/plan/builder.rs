@@ -6,13 +6,14 @@ use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Level;
+use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
 use crate::plan::rows::Rows;
 use crate::plan::span::{Span, required_level};
+use crate::plan::stencils::Stencils;
 use crate::plan::strip::{self, Stretch, Strip};
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{BsplinePatch, ControlPoint, bspline_patch, is_plain_edge, limit_stencil};
+use crate::subdivision::{BsplinePatch, ControlPoint, is_plain_edge, limit_stencil};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -53,19 +54,6 @@ impl PlanOptions {
     }
 }
 
-/// A control point, or a limit position or tangent, as a weighted sum over the 1-ring. Below the root of a tree control points are relative to one
-/// of the plan's first points, which the nodes name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stencil {
-    /// One weight a vertex of the ring.
-    pub weights: Vec<f64>,
-    /// The lowest level that needs it, 0..=max_level.
-    pub level: u32,
-    /// The corner of the face near which it is relative to the limit, or whose limit it is. The sum is then taken relative to that corner's vertex,
-    /// which has the same bits in all faces there; otherwise to the ring's first.
-    pub corner: Option<u32>,
-}
-
 /// The plan of a configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -75,8 +63,8 @@ pub struct Plan {
     pub max_level: u32,
     /// The quadtree; node 0 is its root.
     pub nodes: Vec<Node>,
-    /// Sorted by level.
-    pub stencils: Vec<Stencil>,
+    /// Its points.
+    pub stencils: Stencils,
     /// At each corner whose normal is that of its surroundings, see `plan/nearby.rs`: two tangents, weights of the ring.
     pub nearby: [Option<[Vec<f64>; 2]>; 4],
     /// Of a quad, its cells along each edge, as far as they have all points that the edge is evaluated with.
@@ -89,17 +77,25 @@ impl Plan {
     /// # Errors
     /// As [`PlanOptions::check`]; [`Misuse::Ring`](crate::Misuse::Ring) for the configuration of an edge or vertex.
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Result<Plan> {
+        Plan::build_by(configuration, options, &Steps::default())
+    }
+
+    pub(super) fn build_by(
+        configuration: &Configuration,
+        options: PlanOptions,
+        steps: &Steps,
+    ) -> Result<Plan> {
         let options = options.check()?;
         configuration.check_corners(configuration.arity())?;
-        let base = Level::base(configuration);
+        let base = Level::base(configuration, steps);
         let nearby = nearby::tangents(configuration, &base);
         let bases = Bases::new(4);
         let mut builder = Builder {
             options,
-            rows: bases.rows(base.rows.width()),
+            rows: bases.rows(steps.memory(), base.rows.width()),
             bases,
             numbers: FxHashMap::default(),
-            edges: shared_edges(&base.topology, configuration),
+            edges: shared_edges(base.topology(), configuration),
             halves: Vec::new(),
         };
         let tree = builder.grow(&base).fold();
@@ -136,18 +132,9 @@ impl Plan {
         }
         bases.apply(&mut rows, &mut levels);
         let corners = bases.of_rows();
-        let plan = sorted(nodes, strips, &rows, &levels, &corners, options.max_level);
+        let plan = sorted(nodes, strips, &rows, &levels, &corners, options, steps);
+        steps.leave(rows);
         Ok(Plan { nearby, ..plan })
-    }
-
-    /// How many stencils each level 0..=max_level needs; they are the first ones.
-    pub fn level_counts(&self) -> Vec<usize> {
-        (0..=self.max_level)
-            .map(|level| {
-                self.stencils
-                    .partition_point(|stencil| stencil.level <= level)
-            })
-            .collect()
     }
 }
 
@@ -163,10 +150,10 @@ fn shared_edges(topology: &Topology, configuration: &Configuration) -> Vec<u32> 
 }
 
 /// The weights of a corner's limit.
-fn limit_row(base: &Level, corner: u32) -> Vec<f64> {
+fn limit_row(base: &Level<'_>, corner: u32) -> Vec<f64> {
     let mut level = base.clone();
     loop {
-        if let Some(limit) = limit_stencil(&level.topology, 0, corner) {
+        if let Some(limit) = limit_stencil(level.topology(), 0, corner) {
             let mut rows = Rows::zero(level.rows.width(), 0);
             rows.push(|row| level.rows.add_to(row, &limit.position));
             return rows.row(0).to_vec();
@@ -192,8 +179,9 @@ enum Grown {
 }
 
 /// A cell that needs no children.
-enum Leaf {
-    Spline(Box<BsplinePatch>),
+#[derive(Clone, Copy)]
+enum Leaf<'a> {
+    Spline(&'a BsplinePatch),
     Extraordinary(u32),
 }
 
@@ -226,7 +214,7 @@ pub(super) const DEEPEST: u32 = 11;
 
 impl Builder {
     /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
-    fn grow(&mut self, base: &Level) -> Tree {
+    fn grow(&mut self, base: &Level<'_>) -> Tree {
         let mut grown: Vec<Vec<Grown>> = Vec::new();
         let mut cells = vec![Cell {
             corner: None,
@@ -235,7 +223,7 @@ impl Builder {
         let mut level = base.clone();
         for depth in 0.. {
             self.numbers.clear();
-            let leaves: Vec<Option<Leaf>> = (0..)
+            let leaves: Vec<Option<Leaf<'_>>> = (0..)
                 .zip(&cells)
                 .map(|(number, cell)| self.leaf(&level, number, cell.corner, depth))
                 .collect();
@@ -268,13 +256,17 @@ impl Builder {
     }
 
     /// The cell as a leaf, or None when it must be refined.
-    fn leaf(&self, level: &Level, number: u32, corner: Option<u32>, depth: u32) -> Option<Leaf> {
+    fn leaf<'a>(
+        &self,
+        level: &'a Level<'_>,
+        number: u32,
+        corner: Option<u32>,
+        depth: u32,
+    ) -> Option<Leaf<'a>> {
         let last = depth >= self.options.max_level.max(SHALLOWEST);
         let direct = self.options.direct_creases || last;
-        match (bspline_patch(&level.topology, number), corner) {
-            (Some(patch), _) if patch.crease.is_none() || direct => {
-                Some(Leaf::Spline(Box::new(patch)))
-            }
+        match (level.patch(number), corner) {
+            (Some(patch), _) if patch.crease.is_none() || direct => Some(Leaf::Spline(patch)),
             (_, Some(corner)) if last => Some(Leaf::Extraordinary(corner)),
             _ => {
                 assert!(
@@ -286,12 +278,12 @@ impl Builder {
         }
     }
 
-    fn node(&mut self, level: &Level, leaf: Leaf, base: Option<u32>) -> Node {
+    fn node(&mut self, level: &Level<'_>, leaf: Leaf<'_>, base: Option<u32>) -> Node {
         let patch = match leaf {
             Leaf::Spline(patch) => patch,
             Leaf::Extraordinary(corner) => return Node::Extraordinary { corner },
         };
-        let points = self.points(level, &patch, base);
+        let points = self.points(level, patch, base);
         match patch.crease {
             None => Node::Regular {
                 points,
@@ -310,7 +302,12 @@ impl Builder {
     /// The halves of edges that need points of their own, so that both sides of an edge can evaluate it alike: what a half's points are relative to is up
     /// to the edge alone. It is the limit at the half's end, or, where the surface is regular there but not at the other, at that one: so they are those
     /// of a terminal node around it.
-    fn halves(&mut self, level: &Level, quarters: &[Cell], leaves: &[Option<Leaf>]) -> Vec<Half> {
+    fn halves(
+        &mut self,
+        level: &Level<'_>,
+        quarters: &[Cell],
+        leaves: &[Option<Leaf<'_>>],
+    ) -> Vec<Half> {
         let mut found = Vec::new();
         let edges = self.edges.clone();
         for (edge, half) in edges.into_iter().flat_map(|edge| [(edge, 0), (edge, 1)]) {
@@ -335,11 +332,11 @@ impl Builder {
         found
     }
 
-    fn points(&mut self, level: &Level, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
+    fn points(&mut self, level: &Level<'_>, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
         patch.points.map(|point| self.point(level, point, base))
     }
 
-    fn point(&mut self, level: &Level, point: ControlPoint, base: Option<u32>) -> u32 {
+    fn point(&mut self, level: &Level<'_>, point: ControlPoint, base: Option<u32>) -> u32 {
         *self.numbers.entry((base, point)).or_insert_with(|| {
             self.rows.push(|row| level.rows.add_to(row, &point.mask()));
             self.bases.pushed(base);
@@ -350,7 +347,7 @@ impl Builder {
 
 /// The points of a quarter that is a leaf are relative to the limit at a corner whose quarter is none, where there is one: beside its own, so that they are among
 /// the points of its star; else opposite to it. Around a single extraordinary vertex they are those of a terminal node.
-fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf>]) {
+fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf<'_>>]) {
     let is_leaf = |corner: u32| matches!(leaves[corner as usize], Some(Leaf::Spline(_)));
     for (own, quarter) in (0..).zip(quarters) {
         let others = [1, 3, 2].map(|turn| (own + turn) % 4);
@@ -444,7 +441,8 @@ pub(super) fn sorted(
     rows: &Rows,
     levels: &[u32],
     corners: &[Option<u32>],
-    max_level: u32,
+    PlanOptions { max_level, .. }: PlanOptions,
+    steps: &Steps,
 ) -> Plan {
     let used = |&point: &u32| levels[point as usize] != UNUSED;
     let mut order: Vec<u32> = (0..rows.len() as u32).filter(used).collect();
@@ -478,22 +476,18 @@ pub(super) fn sorted(
     for number in strips.iter_mut().flatten().flat_map(Strip::numbers) {
         *number = place[*number as usize];
     }
-    let weights = |row: &[f64]| {
-        row.iter()
-            .map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight })
-            .collect()
-    };
-    let stencils = order.iter().map(|&old| Stencil {
-        weights: weights(rows.row(old as usize)),
-        level: levels[old as usize],
-        corner: corners[old as usize],
-    });
+    let mut stencils = Stencils::new(rows.width(), !steps.rounded);
+    for &old in &order {
+        let row = rows.row(old as usize).iter();
+        let weights = row.map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight });
+        stencils.push(levels[old as usize], corners[old as usize], weights);
+    }
     Plan {
         nearby: Default::default(),
         strips,
         ring_size: rows.width(),
         max_level,
         nodes,
-        stencils: stencils.collect(),
+        stencils,
     }
 }

@@ -337,11 +337,10 @@ impl Walk<'_> {
                 let [a, b] = ends.map(|end| end.expect("the faces have their edges' ends"));
                 if a.min(b) < corners && seen.add(number) {
                     let ends = if a < b { [a, b] } else { [b, a] };
-                    let next = if a < b {
-                        edge.next
-                    } else {
-                        [edge.next[1], edge.next[0]]
-                    };
+                    let mut next = self.topology.next_sharpness(number);
+                    if a > b {
+                        next.reverse();
+                    }
                     self.words.extend(ends.map(|end| end as u32));
                     self.words
                         .extend([edge.sharpness, next[0], next[1]].map(f32::to_bits));

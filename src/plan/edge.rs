@@ -10,7 +10,7 @@ use crate::mesh::sharpness::is_infinite;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::builder::{DEEPEST, Plan, PlanOptions, SHALLOWEST, sorted};
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Level;
+use crate::plan::level::{Level, Steps};
 use crate::plan::rows::Rows;
 use crate::plan::span::Span;
 use crate::plan::tree::Node;
@@ -67,12 +67,21 @@ impl EdgePlan {
         kind: EdgeKind,
         options: PlanOptions,
     ) -> Result<EdgePlan> {
+        EdgePlan::build_by(configuration, kind, options, &Steps::default())
+    }
+
+    pub(super) fn build_by(
+        configuration: &Configuration,
+        kind: EdgeKind,
+        options: PlanOptions,
+        steps: &Steps,
+    ) -> Result<EdgePlan> {
         let options = options.check()?;
         configuration.check_corners(match kind {
             EdgeKind::Whole => 2,
             EdgeKind::Spoke => configuration.arity(),
         })?;
-        let whole = Level::whole(configuration);
+        let whole = Level::whole(configuration, steps);
         let base = match kind {
             EdgeKind::Whole => whole,
             EdgeKind::Spoke => whole.refined(&[(0, 0)]),
@@ -82,11 +91,11 @@ impl EdgePlan {
             EdgeKind::Whole => 0,
             EdgeKind::Spoke => 1,
         };
-        let edge = base.topology.face_edges(0)[corner];
-        let sides = base.topology.edge_faces(edge).to_vec();
-        let sharp = is_infinite(base.topology.edge(edge).sharpness);
+        let edge = base.topology().face_edges(0)[corner];
+        let sides = base.topology().edge_faces(edge).to_vec();
+        let sharp = is_infinite(base.topology().edge(edge).sharpness);
         // The patches of an n-gon have half of an edge each.
-        let halved = |&face: &u32| base.topology.face(face).len() != 4;
+        let halved = |&face: &u32| base.topology().face(face).len() != 4;
         let deeper = u32::from(sides.iter().any(halved));
         let options = PlanOptions {
             max_level: options.max_level + deeper,
@@ -94,7 +103,7 @@ impl EdgePlan {
         };
         let stretch = Stretch {
             edge,
-            from: base.topology.face(0)[corner],
+            from: base.topology().face(0)[corner],
             sides: sides.clone(),
             ends: [true; 2],
             span: Span::WHOLE,
@@ -102,7 +111,7 @@ impl EdgePlan {
         let bases = Bases::new(2);
         let mut builder = Builder {
             options,
-            rows: bases.rows(base.rows.width()),
+            rows: bases.rows(steps.memory(), base.rows.width()),
             bases,
             levels: vec![UNUSED; 2],
         };
@@ -114,23 +123,25 @@ impl EdgePlan {
             ..
         } = builder;
         bases.apply(&mut rows, &mut levels);
-        let nodes = flatten(branch);
+        let plan = sorted(
+            flatten(branch),
+            Default::default(),
+            &rows,
+            &levels,
+            &vec![None; rows.len()],
+            options,
+            steps,
+        );
+        steps.leave(rows);
         Ok(EdgePlan {
-            plan: sorted(
-                nodes,
-                Default::default(),
-                &rows,
-                &levels,
-                &vec![None; rows.len()],
-                options.max_level,
-            ),
+            plan,
             sides: if sharp { sides } else { Vec::new() },
         })
     }
 }
 
 impl Builder {
-    fn grow(&mut self, level: &Level, stretch: Stretch, depth: u32) -> Branch {
+    fn grow(&mut self, level: &Level<'_>, stretch: Stretch, depth: u32) -> Branch {
         let Stretch {
             edge,
             from,
@@ -140,11 +151,11 @@ impl Builder {
         } = stretch;
         // The half of the edge that it is or lies in.
         let half = u32::from(!span.interior_half_is_upper());
-        let both = [from, level.topology.edge(edge).other(from)];
+        let both = [from, level.topology().edge(edge).other(from)];
         for (vertex, _) in both.iter().zip(ends).filter(|(_, end)| depth > 0 && *end) {
             self.bases.found(half, &level.rows.row(*vertex as usize));
         }
-        if let Some(curve) = edge_curve(&level.topology, edge, from, sides) {
+        if let Some(curve) = edge_curve(level.topology(), edge, from, sides) {
             return Branch::Leaf(self.leaf(level, &curve, span, depth));
         }
         let last = depth >= self.options.max_level.max(SHALLOWEST);
@@ -163,8 +174,8 @@ impl Builder {
             let sides: Vec<u32> = (0..sides.len() as u32)
                 .map(|side| 2 * side + half)
                 .collect();
-            let shared = |&edge: &u32| next.topology.edge(edge).vertices.contains(&(half + 1));
-            let edges = next.topology.vertex_edges(from);
+            let shared = |&edge: &u32| next.topology().edge(edge).vertices.contains(&(half + 1));
+            let edges = next.topology().vertex_edges(from);
             let edge = edges.iter().copied().find(shared);
             let stretch = Stretch {
                 edge: edge.expect("the halves of an edge are edges"),
@@ -178,7 +189,7 @@ impl Builder {
         Branch::Inner(Box::new(halves))
     }
 
-    fn leaf(&mut self, level: &Level, curve: &EdgeCurve, span: Span, depth: u32) -> Node {
+    fn leaf(&mut self, level: &Level<'_>, curve: &EdgeCurve, span: Span, depth: u32) -> Node {
         let half = u32::from(!span.interior_half_is_upper());
         let required = span.required_level(self.options.max_level);
         // Both halves may share points at depth 1.

@@ -1,51 +1,172 @@
 //! Refinement levels with every vertex kept as a row of weights over the 1-ring.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use rustc_hash::FxHashMap;
+
 use crate::mesh::topology::Topology;
 use crate::plan::configuration::Configuration;
+use crate::plan::rows::Rows;
 use crate::plan::sums::Sums;
-use crate::subdivision::{Refinement, refine, refine_edge};
+use crate::subdivision::{BsplinePatch, Mask, Refinement, bspline_patch, refine, refine_edge};
 
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
 #[derive(Clone)]
-pub(super) struct Level {
-    pub topology: Topology,
+pub(super) struct Level<'a> {
+    steps: &'a Steps,
+    step: Rc<Step>,
     pub rows: Sums,
 }
 
-impl Level {
+impl<'a> Level<'a> {
     /// The configuration's own faces.
-    pub fn whole(configuration: &Configuration) -> Level {
+    pub fn whole(configuration: &Configuration, steps: &'a Steps) -> Level<'a> {
         let topology = configuration.topology();
         Level {
+            steps,
             rows: Sums::identity(topology.vertex_count()),
-            topology,
+            step: Rc::new(Step {
+                patches: vec![bspline_patch(&topology, 0)],
+                masks: Vec::new(),
+                topology,
+            }),
         }
     }
 
     /// The level at which the plan of a face begins: the quad itself, or the n-gon's part at its corner 0.
-    pub fn base(configuration: &Configuration) -> Level {
-        let base = Level::whole(configuration);
-        if base.topology.face(0).len() == 4 {
+    pub fn base(configuration: &Configuration, steps: &'a Steps) -> Level<'a> {
+        let base = Level::whole(configuration, steps);
+        if base.topology().face(0).len() == 4 {
             base
         } else {
             base.refined(&[(0, 0)])
         }
     }
 
+    /// Its faces.
+    pub fn topology(&self) -> &Topology {
+        &self.step.topology
+    }
+
+    /// A cell as a B-spline, see [`bspline_patch`].
+    pub fn patch(&self, cell: u32) -> Option<&BsplinePatch> {
+        self.step.patches[cell as usize].as_ref()
+    }
+
     /// The next level of some cells.
-    pub fn refined(&self, cells: &[(u32, u32)]) -> Level {
-        self.next(refine(&self.topology, cells))
+    pub fn refined(&self, cells: &[(u32, u32)]) -> Level<'a> {
+        let words = cells.iter().flat_map(|&(face, corner)| [face, corner]);
+        self.next(CELLS, words, || refine(self.topology(), cells))
     }
 
     /// The next level of the two halves of an edge; see [`refine_edge`].
-    pub fn refined_edge(&self, edge: u32, from: u32, sides: &[u32]) -> Level {
-        self.next(refine_edge(&self.topology, edge, from, sides))
+    pub fn refined_edge(&self, edge: u32, from: u32, sides: &[u32]) -> Level<'a> {
+        let words = [edge, from].into_iter().chain(sides.iter().copied());
+        self.next(EDGE, words, || {
+            refine_edge(self.topology(), edge, from, sides)
+        })
     }
 
-    fn next(&self, refined: Refinement) -> Level {
+    fn next(
+        &self,
+        kind: u32,
+        chosen: impl Iterator<Item = u32>,
+        refine: impl FnOnce() -> Refinement,
+    ) -> Level<'a> {
+        let step = self.steps.step(self.topology(), kind, chosen, refine);
         Level {
-            topology: refined.topology,
-            rows: self.rows.next(&refined.masks),
+            steps: self.steps,
+            rows: self.rows.next(&step.masks),
+            step,
+        }
+    }
+}
+
+/// Steps of refinement that were made. Around one extraordinary vertex, and once semi-sharp creases are gone, every step is like the one before, and many
+/// plans have the same: what depends on the topology alone is done once.
+#[derive(Default)]
+pub struct Steps {
+    /// Whether plans get weights as shaders have them.
+    pub(super) rounded: bool,
+    known: RefCell<FxHashMap<Box<[u32]>, Rc<Step>>>,
+    /// Memory for rows, which one plan after another uses.
+    memory: RefCell<Vec<f64>>,
+}
+
+/// A step: the next topology, where its vertices come from, and its cells as B-splines; no cells of edges.
+struct Step {
+    topology: Topology,
+    masks: Vec<Mask>,
+    patches: Vec<Option<BsplinePatch>>,
+}
+
+/// Topologies of more vertices are not kept.
+const SMALL: usize = 128;
+/// So many steps are kept, some three megabytes.
+const MOST: usize = 1 << 7;
+/// What is refined.
+const CELLS: u32 = 0;
+const EDGE: u32 = 1;
+
+impl Steps {
+    /// For plans with weights as shaders have them.
+    pub fn rounded() -> Steps {
+        Steps {
+            rounded: true,
+            ..Steps::default()
+        }
+    }
+
+    /// The memory that [`Steps::leave`] left.
+    pub(super) fn memory(&self) -> Vec<f64> {
+        self.memory.take()
+    }
+
+    /// Leaves the memory of rows to those of the next plan.
+    pub(super) fn leave(&self, rows: Rows) {
+        self.memory.replace(rows.into_memory());
+    }
+
+    fn step(
+        &self,
+        topology: &Topology,
+        kind: u32,
+        chosen: impl Iterator<Item = u32>,
+        refine: impl FnOnce() -> Refinement,
+    ) -> Rc<Step> {
+        if topology.vertex_count() > SMALL {
+            return Step::new(kind, refine()).into();
+        }
+        let mut key = vec![kind, 0];
+        key.extend(chosen);
+        key[1] = key.len() as u32;
+        topology.write_down(&mut key);
+        if let Some(known) = self.known.borrow().get(&key[..]) {
+            return known.clone();
+        }
+        let step = Rc::new(Step::new(kind, refine()));
+        let mut known = self.known.borrow_mut();
+        if known.len() == MOST {
+            known.clear();
+        }
+        known.insert(key.into(), step.clone());
+        step
+    }
+}
+
+impl Step {
+    fn new(kind: u32, refinement: Refinement) -> Step {
+        let Refinement {
+            topology,
+            masks,
+            cells,
+        } = refinement;
+        let cells = 0..if kind == CELLS { cells } else { 0 };
+        Step {
+            patches: cells.map(|cell| bspline_patch(&topology, cell)).collect(),
+            topology,
+            masks,
         }
     }
 }

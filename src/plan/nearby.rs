@@ -13,7 +13,10 @@ use crate::subdivision::{TangentPlane, limit_stencil, orthonormal, tangent_plane
 const HALVINGS: u32 = 6;
 
 /// The tangents near the corners that ask for them; `base` is the quad itself or the n-gon's part at corner 0.
-pub(super) fn tangents(configuration: &Configuration, base: &Level) -> [Option<[Vec<f64>; 2]>; 4] {
+pub(super) fn tangents(
+    configuration: &Configuration,
+    base: &Level<'_>,
+) -> [Option<[Vec<f64>; 2]>; 4] {
     let topology = configuration.topology();
     let quad = topology.face(0).len() == 4;
     [0, 1, 2, 3].map(|corner| {
@@ -27,10 +30,10 @@ fn is_asked(topology: &Topology, corner: u32) -> bool {
     alone || matches!(tangent_plane(topology, 0, corner), TangentPlane::Face(_))
 }
 
-fn at_corner(base: &Level, corner: u32) -> [Vec<f64>; 2] {
+fn at_corner(base: &Level<'_>, corner: u32) -> [Vec<f64>; 2] {
     let first = base.refined(&[(0, corner)]);
     let deepest = (1..HALVINGS).fold(first, |level, _| level.refined(&[(0, corner)]));
-    let limit = limit_stencil(&deepest.topology, 0, (corner + 2) % 4);
+    let limit = limit_stencil(deepest.topology(), 0, (corner + 2) % 4);
     let limit = limit.expect("four quads meet inside of a face, and nothing there is sharp");
     let mut rows = Rows::zero(deepest.rows.width(), 0);
     rows.push(|row| deepest.rows.add_to(row, &limit.du));

@@ -70,13 +70,14 @@ impl PackedPlans {
         if points > greatest {
             return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
         }
-        let counts = plan.level_counts();
         self.headers.push(PlanHeader {
             ring_size: plan.ring_size as u32,
             rows: self.rows.len() as u32,
             root: self.nodes.len() as u32,
             max_level: plan.max_level,
-            counts: std::array::from_fn(|level| counts[level.min(counts.len() - 1)] as u32),
+            counts: std::array::from_fn(|level| {
+                plan.stencils.count(plan.max_level.min(level as u32)) as u32
+            }),
         });
         let root = self.nodes.len() as u32;
         for node in &plan.nodes {
@@ -85,13 +86,15 @@ impl PackedPlans {
         }
         // A plan without nodes is a vertex's: its limit, and tangents.
         let is_vertex = plan.nodes.is_empty();
-        for stencil in &plan.stencils {
-            let corner = stencil.corner;
+        let mut weights = Vec::new();
+        for number in 0..plan.stencils.len() {
+            let corner = plan.stencils.corner(number);
             let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
+            plan.stencils.write_weights(number, &mut weights);
             if is_vertex {
-                self.rows.push_dense(&stencil.weights)?;
+                self.rows.push_dense(&weights)?;
             } else {
-                self.rows.push(&stencil.weights, corner)?;
+                self.rows.push(&weights, corner)?;
             }
         }
         for tangent in plan.nearby.iter().flatten().flatten() {
@@ -168,7 +171,7 @@ impl PackedPlans {
         };
         // Bases come first among the stencils, so their numbers are small.
         let base = base.map_or(0, |number| {
-            let corner = plan.stencils[number as usize].corner;
+            let corner = plan.stencils.corner(number as usize);
             let origin = corner.map_or(0, |corner| abi::STENCIL_CORNER + corner);
             (number + 1) << abi::NODE_BASE_SHIFT | origin << abi::NODE_ORIGIN_SHIFT
         });

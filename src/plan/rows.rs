@@ -18,6 +18,18 @@ impl Rows {
         }
     }
 
+    /// The same in the memory of others.
+    pub fn zero_in(mut weights: Vec<f64>, width: usize, count: usize) -> Rows {
+        weights.clear();
+        weights.resize(width * count, 0.0);
+        Rows { width, weights }
+    }
+
+    /// Their memory, for others.
+    pub fn into_memory(self) -> Vec<f64> {
+        self.weights
+    }
+
     /// The vertices of the ring themselves.
     pub fn identity(width: usize) -> Rows {
         let mut rows = Rows::zero(width, width);

@@ -4,10 +4,11 @@ use rustc_hash::FxHashMap;
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
-use crate::plan::builder::{Plan, PlanOptions, Stencil};
+use crate::plan::builder::{Plan, PlanOptions};
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Level;
+use crate::plan::level::{Level, Steps};
 use crate::plan::rows::Rows;
+use crate::plan::stencils::Stencils;
 use crate::plan::sums::Sums;
 use crate::subdivision::{
     LimitStencil, TangentPlane, closing_tangents, limit_stencil, orthonormal, tangent_plane,
@@ -52,15 +53,24 @@ impl VertexPlan {
         kind: VertexKind,
         options: PlanOptions,
     ) -> Result<VertexPlan> {
+        VertexPlan::build_by(configuration, kind, options, &Steps::default())
+    }
+
+    pub(super) fn build_by(
+        configuration: &Configuration,
+        kind: VertexKind,
+        options: PlanOptions,
+        steps: &Steps,
+    ) -> Result<VertexPlan> {
         let options = options.check()?;
         configuration.check_corners(match kind {
             VertexKind::Control => 1,
             VertexKind::Centre => configuration.arity(),
         })?;
-        let whole = Level::whole(configuration);
+        let whole = Level::whole(configuration, steps);
         let (mut level, mut corners) = match kind {
             VertexKind::Control => {
-                let around = whole.topology.vertex_faces(0);
+                let around = whole.topology().vertex_faces(0);
                 let corners: Vec<(u32, u32)> =
                     around.iter().map(|at| (at.face, at.corner)).collect();
                 (whole.clone(), corners)
@@ -71,10 +81,10 @@ impl VertexPlan {
         corners.sort_unstable();
         let own = corners.clone();
         loop {
-            let sectors = sectors(&level.topology, &corners);
+            let sectors = sectors(level.topology(), &corners);
             let limit = |sector: &Vec<usize>| {
                 let (face, corner) = corners[sector[0]];
-                limit_stencil(&level.topology, face, corner)
+                limit_stencil(level.topology(), face, corner)
             };
             let Some(limits) = sectors.iter().map(limit).collect::<Option<Vec<_>>>() else {
                 (level, corners) = refined(&level, &corners);
@@ -87,7 +97,7 @@ impl VertexPlan {
             let mut cusps = 0;
             for (sector, limit) in sectors.iter().zip(&limits) {
                 let (face, corner) = corners[sector[0]];
-                let plane = tangent_plane(&level.topology, face, corner);
+                let plane = tangent_plane(level.topology(), face, corner);
                 // At a cusp each face has a plane of its own, and no tangents.
                 if matches!(plane, TangentPlane::Face(_)) && sector.len() > 1 {
                     cusps += sector.len();
@@ -97,7 +107,7 @@ impl VertexPlan {
                 let side = known.map(|&(_, side)| side).unwrap_or_else(|| {
                     let (face, corner) = own[sector[0]];
                     let spare = match kind {
-                        VertexKind::Control => closing_tangents(&whole.topology, face, corner),
+                        VertexKind::Control => closing_tangents(whole.topology(), face, corner),
                         VertexKind::Centre => None,
                     };
                     let pair = Some((rows.len() as u32 - 1) / 2);
@@ -112,7 +122,7 @@ impl VertexPlan {
                 sector.iter().for_each(|&place| sides[place] = side);
             }
             return Ok(VertexPlan {
-                plan: plan(&rows, options),
+                plan: plan(&rows, options, steps),
                 sides,
                 planes: planes.len() + cusps,
             });
@@ -152,8 +162,8 @@ fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Sums) {
 }
 
 /// The next level around the vertex: the children at it, in the order of their parents, and their corners there.
-fn refined(level: &Level, corners: &[(u32, u32)]) -> (Level, Vec<(u32, u32)>) {
-    let arity = |face: u32| level.topology.face(face).len();
+fn refined<'a>(level: &Level<'a>, corners: &[(u32, u32)]) -> (Level<'a>, Vec<(u32, u32)>) {
+    let arity = |face: u32| level.topology().face(face).len();
     let next = corners.iter().enumerate().map(|(child, &(face, corner))| {
         // A quad's child keeps its corners; an n-gon's begins at the vertex.
         (child as u32, if arity(face) == 4 { corner } else { 0 })
@@ -163,17 +173,16 @@ fn refined(level: &Level, corners: &[(u32, u32)]) -> (Level, Vec<(u32, u32)>) {
 }
 
 /// The stencils.
-fn plan(rows: &Rows, options: PlanOptions) -> Plan {
-    let stencil = |number: usize| Stencil {
-        weights: rows.row(number).to_vec(),
-        level: 0,
-        corner: None,
-    };
+fn plan(rows: &Rows, options: PlanOptions, steps: &Steps) -> Plan {
+    let mut stencils = Stencils::new(rows.width(), !steps.rounded);
+    for number in 0..rows.len() {
+        stencils.push(0, None, rows.row(number).iter().copied());
+    }
     Plan {
         ring_size: rows.width(),
         max_level: options.max_level,
         nodes: Vec::new(),
-        stencils: (0..rows.len()).map(stencil).collect(),
+        stencils,
         nearby: Default::default(),
         strips: Default::default(),
     }

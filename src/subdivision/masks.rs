@@ -108,11 +108,10 @@ pub(super) fn edge_point_with(topology: &Topology, edge: u32, smooth: Smooth) ->
 /// Under Chaikin's rule a sharpness above 1 may leave a half smooth, beside an edge that is nearly so. Then the share is more than 1, and the smooth
 /// rule has a negative one: `Sdc::Scheme::ComputeEdgeVertexMask` does not clamp it, where the transition of a vertex is clamped.
 fn crease_share(topology: &Topology, edge: u32) -> f64 {
-    let edge = topology.edge(edge);
-    if edge.next.into_iter().all(is_sharp) {
+    if topology.next_sharpness(edge).into_iter().all(is_sharp) {
         1.0
     } else {
-        f64::from(edge.sharpness)
+        f64::from(topology.edge(edge).sharpness)
     }
 }
 
@@ -167,7 +166,7 @@ pub(super) fn vertex_point_with(topology: &Topology, vertex: u32, smooth: Smooth
     let still: SmallVec<[u32; 4]> = sharp
         .iter()
         .copied()
-        .filter(|&edge| is_sharp(topology.edge(edge).next_at(vertex)))
+        .filter(|&edge| is_sharp(topology.next_at(edge, vertex)))
         .collect();
     let (before, after) = (rule(now, sharp.len()), rule(next, still.len()));
     let mut mask = Mask::new();
@@ -193,10 +192,10 @@ pub(super) fn vertex_point_with(topology: &Topology, vertex: u32, smooth: Smooth
 fn fading_share(topology: &Topology, vertex: u32, sharp: &[u32]) -> f64 {
     let own = topology.vertex_sharpness(vertex);
     let own = (is_sharp(own) && !is_sharp(crate::mesh::sharpness::decayed(own))).then_some(own);
-    let edges = sharp.iter().map(|&edge| topology.edge(edge));
-    let fading = edges
-        .filter(|edge| !is_sharp(edge.next_at(vertex)))
-        .map(|edge| edge.sharpness);
+    let fading = sharp
+        .iter()
+        .filter(|&&edge| !is_sharp(topology.next_at(edge, vertex)))
+        .map(|&edge| topology.edge(edge).sharpness);
     let fading: SmallVec<[f32; 4]> = own.into_iter().chain(fading).collect();
     if fading.is_empty() {
         0.0
@@ -386,11 +385,9 @@ mod tests {
             near(beside.sum(), (1.0 - share) / 16.0);
         }
         let (topology, _) = grid([0.0; 3], 0.0, &[], BoundaryInterpolation::None);
-        let edge = topology.edge(edge_between(&topology, 0, 1));
-        assert_eq!(
-            (edge.sharpness, edge.next),
-            (INFINITE_SHARPNESS, [INFINITE_SHARPNESS; 2])
-        );
+        let edge = edge_between(&topology, 0, 1);
+        let (own, next) = (topology.edge(edge).sharpness, topology.next_sharpness(edge));
+        assert_eq!((own, next), (INFINITE_SHARPNESS, [INFINITE_SHARPNESS; 2]));
         assert_eq!(topology.options().scheme, Scheme::CatmullClark);
     }
 }

@@ -24,7 +24,7 @@ pub use limit::{LimitStencil, is_cusp, limit_stencil};
 pub(crate) use limit::{TangentPlane, closing_tangents, is_unpromised, tangent_plane};
 pub use limit_surface::{LimitSample, LimitSurface};
 pub use masks::{Blend, Mask};
-pub(crate) use plain::{is_plain_edge, is_plain_vertex};
+pub(crate) use plain::is_plain_edge;
 pub(crate) use refine::refine_edge;
 pub use refine::{Refinement, refine};
 pub(crate) use regular::{BsplinePatch, ControlPoint, bspline_patch};

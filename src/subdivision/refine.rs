@@ -50,22 +50,39 @@ fn child(topology: &Topology, face: u32, corner: u32) -> [Origin; 4] {
 
 /// The faces that share a vertex with any of the `faces`, which come first; each once.
 pub(crate) fn with_neighbours(topology: &Topology, faces: &[u32]) -> Vec<u32> {
-    let mut all = Places::default();
-    for &face in faces {
-        all.add(face);
+    if topology.face_count() + topology.vertex_count() > SMALL {
+        let (mut all, mut vertices) = (Places::default(), Places::default());
+        let new_face = |face| all.add(face);
+        return neighbours(topology, faces, new_face, |vertex| vertices.add(vertex));
     }
+    let mut is_met = [false; SMALL];
+    let (all, vertices) = is_met.split_at_mut(topology.face_count());
+    let meet = |met: &mut bool| !std::mem::replace(met, true);
+    let new_face = |face: u32| meet(&mut all[face as usize]);
+    neighbours(topology, faces, new_face, |vertex: u32| {
+        meet(&mut vertices[vertex as usize])
+    })
+}
+
+/// So many faces and vertices together are marked one by one.
+const SMALL: usize = 1 << 10;
+
+fn neighbours(
+    topology: &Topology,
+    faces: &[u32],
+    mut new_face: impl FnMut(u32) -> bool,
     // A vertex that many faces share is asked once.
-    let mut vertices = Places::default();
-    for &face in faces {
-        for &vertex in topology.face(face) {
-            if vertices.add(vertex) {
-                for corner in topology.vertex_faces(vertex) {
-                    all.add(corner.face);
-                }
-            }
+    mut new_vertex: impl FnMut(u32) -> bool,
+) -> Vec<u32> {
+    let mut all = Vec::with_capacity(4 * faces.len() + 12);
+    all.extend(faces.iter().copied().filter(|&face| new_face(face)));
+    for &vertex in faces.iter().flat_map(|&face| topology.face(face)) {
+        if new_vertex(vertex) {
+            let around = topology.vertex_faces(vertex).iter();
+            all.extend(around.map(|at| at.face).filter(|&face| new_face(face)));
         }
     }
-    all.found().to_vec()
+    all
 }
 
 /// Refines the given children, each a face and a corner of it, with everything that touches them. Those of corners that the topology has not are left
@@ -223,7 +240,7 @@ impl Step<'_> {
 pub(super) fn half(parent: &Topology, edge: u32, vertex: u32) -> (f32, [f32; 2]) {
     let method = parent.options().creasing;
     let whole = parent.edge(edge);
-    let sharpness = whole.next_at(vertex);
+    let sharpness = parent.next_at(edge, vertex);
     if !is_sharp(sharpness) {
         return (sharpness, [0.0; 2]);
     }
@@ -231,15 +248,15 @@ pub(super) fn half(parent: &Topology, edge: u32, vertex: u32) -> (f32, [f32; 2])
         return (sharpness, [decayed(sharpness); 2]);
     }
     let around = parent.vertex_edges(vertex);
-    let halves: SmallVec<[f32; 8]> = around
-        .iter()
-        .map(|&e| parent.edge(e).next_at(vertex))
-        .collect();
+    let halves: SmallVec<[f32; 8]> = around.iter().map(|&e| parent.next_at(e, vertex)).collect();
     let at = around
         .iter()
         .position(|&e| e == edge)
         .expect("the edge ends in this vertex");
     let near = decayed_around_vertex(method, &halves)[at];
-    let far = decayed_around_vertex(method, &[sharpness, whole.next_at(whole.other(vertex))])[0];
+    let far = decayed_around_vertex(
+        method,
+        &[sharpness, parent.next_at(edge, whole.other(vertex))],
+    )[0];
     (sharpness, [near, far])
 }

@@ -195,12 +195,13 @@ fn straight_crease(
     sharp: &[u32],
 ) -> Option<(usize, f32)> {
     let first = edges.iter().position(|edge| sharp.contains(edge))?;
-    let pair = [edges[first], edges[(first + 2) % 4]].map(|edge| topology.edge(edge));
-    let sharpness = pair[0].sharpness;
-    let alike = pair.iter().all(|edge| {
+    let pair = [edges[first], edges[(first + 2) % 4]];
+    let sharpness = topology.edge(pair[0]).sharpness;
+    let alike = pair.into_iter().all(|number| {
+        let edge = topology.edge(number);
         edge.other(vertex) != vertex
             && edge.sharpness == sharpness
-            && edge.next == [decayed(sharpness); 2]
+            && topology.next_sharpness(number) == [decayed(sharpness); 2]
     });
     alike.then_some((first, sharpness))
 }

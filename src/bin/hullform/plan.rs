@@ -1,16 +1,22 @@
 //! `hullform plan`: how the faces of a model are planned.
 
+mod drawing;
+mod face;
+
 use crate::db::database;
 use crate::options::{self, Global};
+use crate::output::{self, Contents, Format};
 use crate::{model, print, print_json, progress};
 use clap::Args;
+use face::FacePlan;
+use hullform::abi::Patch;
 use hullform::mesh::{ControlMesh, Model, replicated};
 use hullform::method::{Prepared, method};
 use hullform::plan::{PlanOptions, Ring};
 use hullform::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Options of `plan`.
@@ -32,10 +38,28 @@ pub struct Arguments {
     /// Threads to plan with [default: one a core]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Draw the quadtree of this face, by its number from 0
+    #[arg(long, value_name = "F", requires = "output")]
+    face: Option<u32>,
+    /// Where to draw it: a picture, or its nodes and where they are
+    #[arg(short, long, value_name = "FILE.svg|json", requires = "face")]
+    output: Option<PathBuf>,
 }
 
-/// Plans the model's faces and prints what came out.
+impl Arguments {
+    fn options(&self) -> PlanOptions {
+        PlanOptions {
+            max_level: self.max_level.into(),
+            direct_creases: !self.no_direct_creases,
+        }
+    }
+}
+
+/// Plans the model's faces and prints what came out; or draws the plan of one of them.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    if let (Some(face), Some(path)) = (arguments.face, &arguments.output) {
+        return draw(arguments, face, path);
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
@@ -56,6 +80,29 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     } else {
         print(&as_text(&facts))
     }
+}
+
+/// Draws the quadtree of a face.
+fn draw(arguments: &Arguments, face: u32, path: &Path) -> Result<()> {
+    let format = Format::of(path, &[Format::Svg, Format::Json])?;
+    let reads = model::file(Some(&arguments.model));
+    let files = output::create(reads.as_slice(), &[("--output", path)])?;
+    let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
+    let name = model::name(Some(&arguments.model));
+    let plans = method("quadtree")?
+        .check_model(&model)
+        .and_then(|()| face::plans(&model, face, arguments.options()));
+    let plans = model::named(Some(&arguments.model), plans)?;
+    let text = match format {
+        Format::Svg => drawing::svg(&format!("Face {face} of {name}"), &plans),
+        _ => {
+            let parts: Vec<Value> = plans.iter().map(FacePlan::json).collect();
+            format!("{:#}\n", json!({"face": face, "plans": parts}))
+        }
+    };
+    let contents: &Contents = &|out| out.write_all(text.as_bytes());
+    output::write(files.into_iter().map(|file| (file, contents)))?;
+    print(&output::wrote(path))
 }
 
 /// The most memory that the program had so far; None where the system does not tell.
@@ -87,7 +134,13 @@ fn as_text(facts: &Map<String, Value>) -> String {
 fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
     let offsets = model.mesh().ptex_offsets();
     let planned = prepared.passes.iter().filter(|pass| pass.cached.is_some());
-    let rings = planned.flat_map(|pass| &pass.patches).filter_map(|patch| {
+    // Patches of one plan, turned and mirrored alike, are alike.
+    let alike = planned.flat_map(|pass| {
+        let mut seen = HashSet::new();
+        let is_new = move |patch: &&Patch| seen.insert((patch.plan, patch.flags));
+        pass.patches.iter().filter(is_new)
+    });
+    let rings = alike.filter_map(|patch| {
         let face = offsets.partition_point(|&first| first <= patch.ptex) - 1;
         Ring::from_corner(model.topology(), face as u32, patch.ptex - offsets[face])
     });
@@ -97,10 +150,7 @@ fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
 
 /// What there is to tell about the plans of `mesh`, in the order to tell it.
 fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<String, Value>> {
-    let options = PlanOptions {
-        max_level: arguments.max_level.into(),
-        direct_creases: !arguments.no_direct_creases,
-    };
+    let options = arguments.options();
     let started = Instant::now();
     let model = Model::new(mesh);
     let connected = started.elapsed().as_secs_f64();

@@ -51,7 +51,12 @@ pub(super) fn check_positions(mesh: &ControlMesh) -> Result<()> {
         let position = mesh.positions[vertex as usize];
         position.abs().max_element() > GREATEST_COORDINATE
     };
-    match mesh.face_vertices.iter().find(|&&vertex| is_large(vertex)) {
+    match mesh
+        .faces
+        .vertices()
+        .iter()
+        .find(|&&vertex| is_large(vertex))
+    {
         None => Ok(()),
         Some(&vertex) => refused(
             vertex as usize,
@@ -173,7 +178,7 @@ fn check_texture(mesh: &ControlMesh) -> Result<()> {
     let Some(texture) = &mesh.texture else {
         return Ok(());
     };
-    let (corners, values) = (mesh.face_vertices.len(), texture.values.len());
+    let (corners, values) = (mesh.faces.vertices().len(), texture.values.len());
     let problem = if texture.indices.len() != corners {
         format!(
             "{} texture indices are given for {corners} face corners",

@@ -1,8 +1,12 @@
 //! From faces to who touches whom.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use crate::mesh::SchemeOptions;
+use crate::mesh::faces::Faces;
 use crate::mesh::topology::{Edge, FaceCorner, Topology};
 
 /// Lists of different lengths, one after another.
@@ -13,38 +17,35 @@ pub struct Lists<T> {
 }
 
 impl<T: Copy + Default> Lists<T> {
-    /// Sorts `(list, item)` pairs into `count` lists, keeping the order within each.
-    fn gather(count: usize, pairs: impl Iterator<Item = (u32, T)> + Clone) -> Lists<T> {
+    /// Room for `total` items in lists that are as long as the numbers of those to come tell, which must be below `count`.
+    fn with_room(count: usize, total: usize, lists: impl Iterator<Item = u32>) -> Lists<T> {
         // Two places ahead of its list, an offset first counts, then sums up, and moves to its own place as the list fills.
         let mut offsets = vec![0u32; count + 2];
-        let mut total = 0;
-        for (list, _) in pairs.clone() {
-            offsets[list as usize + 2] += 1;
-            total += 1;
+        lists.for_each(|list| offsets[list as usize + 2] += 1);
+        let mut sum = 0;
+        for offset in &mut offsets {
+            sum += *offset;
+            *offset = sum;
         }
-        for i in 2..offsets.len() {
-            offsets[i] += offsets[i - 1];
+        Lists {
+            offsets,
+            items: vec![T::default(); total],
         }
-        let mut items = vec![T::default(); total];
-        for (list, item) in pairs {
-            let next = &mut offsets[list as usize + 1];
-            items[*next as usize] = item;
-            *next += 1;
-        }
-        Lists { offsets, items }
+    }
+
+    /// Appends to a list, which has room for it.
+    fn push(&mut self, list: u32, item: T) {
+        let next = &mut self.offsets[list as usize + 1];
+        self.items[*next as usize] = item;
+        *next += 1;
     }
 
     /// The list with number `number`; empty where there is none.
     pub fn get(&self, number: u32) -> &[T] {
-        list(&self.offsets, &self.items, number)
-    }
-}
-
-/// One of the lists that stand one after another in `items`, each from its offset to the next; empty where there is none of that number.
-pub(super) fn list<'a, T>(offsets: &[u32], items: &'a [T], number: u32) -> &'a [T] {
-    match offsets.get(number as usize..) {
-        Some(&[start, end, ..]) => &items[start as usize..end as usize],
-        _ => &[],
+        match self.offsets.get(number as usize..) {
+            Some(&[start, end, ..]) => &self.items[start as usize..end as usize],
+            _ => &[],
+        }
     }
 }
 
@@ -56,11 +57,20 @@ impl Topology {
         options: SchemeOptions,
         edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
     ) -> Topology {
-        let mut topology = Topology::of_faces(faces, vertex_sharpness, options);
-        let sides = topology.sides();
-        let first = first_alike(topology.vertex_count(), &sides);
-        topology.join(&sides, &first, |_, a, b| edge(a, b));
-        topology.relate();
+        let faces = Faces::collect(faces).into();
+        Topology::of_faces(faces, vertex_sharpness, options, edge)
+    }
+
+    /// The same of faces that are shared.
+    pub(super) fn of_faces(
+        faces: Arc<Faces>,
+        vertex_sharpness: Vec<f32>,
+        options: SchemeOptions,
+        edge: impl Fn(u32, u32) -> (f32, [f32; 2]),
+    ) -> Topology {
+        let mut topology = Topology::apart(faces, vertex_sharpness, options);
+        let first = topology.first_alike();
+        topology.join(&first, |_, a, b| edge(a, b));
         topology
     }
 
@@ -73,40 +83,35 @@ impl Topology {
         options: SchemeOptions,
         edge: impl Fn(u32, u32, u32) -> (f32, [f32; 2]),
     ) -> Topology {
-        let mut topology = Topology::of_faces(faces, vertex_sharpness, options);
-        let sides = topology.sides();
+        let faces = Faces::collect(faces).into();
+        let mut topology = Topology::apart(faces, vertex_sharpness, options);
         let mut first_of = FxHashMap::default();
         let first: Vec<u32> = (0..)
             .zip(keys)
             .map(|(side, &key)| *first_of.entry(key).or_insert(side))
             .collect();
-        topology.join(&sides, &first, |side, a, b| edge(keys[side], a, b));
-        topology.relate();
+        topology.join(&first, |side, a, b| edge(keys[side], a, b));
         topology
     }
 
-    /// Faces that do not know each other yet.
-    fn of_faces<'a>(
-        faces: impl Iterator<Item = &'a [u32]> + Clone,
-        vertex_sharpness: Vec<f32>,
-        options: SchemeOptions,
-    ) -> Topology {
-        let corners = faces.clone().map(<[u32]>::len).sum();
+    /// Faces that know their vertices, and vertices that know their faces.
+    fn apart(faces: Arc<Faces>, vertex_sharpness: Vec<f32>, options: SchemeOptions) -> Topology {
         let mut topology = Topology {
-            face_offsets: Vec::with_capacity(faces.size_hint().0 + 1),
-            face_vertices: Vec::with_capacity(corners),
+            holes: vec![false; faces.len()],
+            faces,
             vertex_sharpness,
             options,
             ..Default::default()
         };
-        topology.face_offsets.push(0);
-        for face in faces {
-            topology.face_vertices.extend_from_slice(face);
-            topology
-                .face_offsets
-                .push(topology.face_vertices.len() as u32);
+        let corners = topology.faces.vertices().len();
+        let at_vertices = topology.faces.vertices().iter().copied();
+        let mut vertex_faces = Lists::with_room(topology.vertex_count(), corners, at_vertices);
+        for face in 0..topology.face_count() as u32 {
+            for (corner, &vertex) in (0..).zip(topology.face(face)) {
+                vertex_faces.push(vertex, FaceCorner { face, corner });
+            }
         }
-        topology.holes = vec![false; topology.face_count()];
+        topology.vertex_faces = vertex_faces;
         topology
     }
 
@@ -117,43 +122,112 @@ impl Topology {
         self
     }
 
-    /// The two ends of every side of every face.
-    fn sides(&self) -> Vec<[u32; 2]> {
-        let mut sides = Vec::with_capacity(self.face_vertices.len());
-        for face in 0..self.face_count() as u32 {
-            let vertices = self.face(face);
-            let ends = vertices[1..].iter().chain(&vertices[..1]);
-            sides.extend(vertices.iter().zip(ends).map(|(&a, &b)| [a, b]));
+    /// For each side of a face, the first side that joins the same two vertices; linear in their number, however many meet in a vertex.
+    fn first_alike(&self) -> Vec<u32> {
+        let mut first: Vec<u32> = (0..self.faces.vertices().len() as u32).collect();
+        let mut met: SmallVec<[(u32, u32); 2 * FEW]> = SmallVec::new();
+        let mut many = Vec::new();
+        for vertex in 0..self.vertex_count() as u32 {
+            let corners = self.vertex_faces.get(vertex);
+            if corners.len() > FEW {
+                many.resize(self.vertex_count(), (u32::MAX, 0));
+            }
+            met.clear();
+            for &FaceCorner { face, corner } in corners {
+                let start = self.side(face, 0);
+                let vertices = self.face(face);
+                let before = if corner == 0 {
+                    vertices.len() as u32
+                } else {
+                    corner
+                } - 1;
+                let after = if corner as usize + 1 == vertices.len() {
+                    0
+                } else {
+                    corner + 1
+                };
+                // By the side's lower end, the earlier side first.
+                let mut sides = [
+                    (start + before, vertices[before as usize]),
+                    (start + corner, vertices[after as usize]),
+                ];
+                if corner == 0 {
+                    sides.swap(0, 1);
+                }
+                for (side, other) in sides.into_iter().filter(|&(_, other)| other > vertex) {
+                    let known = if corners.len() <= FEW {
+                        let found = met.iter().find(|known| known.0 == other);
+                        found.map(|&(_, first)| first).or_else(|| {
+                            met.push((other, side));
+                            None
+                        })
+                    } else {
+                        // What another vertex left is stale.
+                        let (of, first) = &mut many[other as usize];
+                        if *of == vertex {
+                            Some(*first)
+                        } else {
+                            (*of, *first) = (vertex, side);
+                            None
+                        }
+                    };
+                    if let Some(known) = known {
+                        first[side as usize] = known;
+                    }
+                }
+            }
         }
-        sides
+        first
     }
 
-    /// Numbers the edges in the order in which the faces first show them; `first` tells for each side the first of its edge.
-    fn join(
-        &mut self,
-        sides: &[[u32; 2]],
-        first: &[u32],
-        edge: impl Fn(usize, u32, u32) -> (f32, [f32; 2]),
-    ) {
-        self.face_edges = Vec::with_capacity(sides.len());
+    /// Numbers the edges in the order in which the faces first show them; `first` tells for each side the first of its edge. Then fills the lists that
+    /// answer "which faces and edges touch".
+    fn join(&mut self, first: &[u32], edge: impl Fn(usize, u32, u32) -> (f32, [f32; 2])) {
         let is_first = |&(side, &first): &(usize, &u32)| side == first as usize;
-        let edges = first.iter().enumerate().filter(is_first).count();
-        self.edges = Vec::with_capacity(edges);
-        for (side, &first) in first.iter().enumerate() {
-            let number = if first as usize == side {
-                let vertices = sides[side];
-                let (sharpness, next) = edge(side, vertices[0], vertices[1]);
-                self.edges.push(Edge {
-                    vertices,
+        let count = first.iter().enumerate().filter(is_first).count();
+        let mut edges: Vec<Edge> = Vec::with_capacity(count);
+        let mut nexts: Vec<[f32; 2]> = Vec::new();
+        let mut face_edges: Vec<u32> = Vec::with_capacity(first.len());
+        for face in 0..self.face_count() as u32 {
+            let vertices = self.face(face);
+            for (corner, &from) in vertices.iter().enumerate() {
+                let side = face_edges.len();
+                let known = first[side] as usize;
+                if known < side {
+                    face_edges.push(face_edges[known]);
+                    continue;
+                }
+                let to = *vertices.get(corner + 1).unwrap_or(&vertices[0]);
+                let (sharpness, next) = edge(side, from, to);
+                face_edges.push(edges.len() as u32);
+                if next != [0.0; 2] {
+                    nexts.resize(count, [0.0; 2]);
+                    nexts[edges.len()] = next;
+                }
+                edges.push(Edge {
+                    vertices: [from, to],
                     sharpness,
-                    next,
                 });
-                self.edges.len() as u32 - 1
-            } else {
-                self.face_edges[first as usize]
-            };
-            self.face_edges.push(number);
+            }
         }
+        let at_edges = face_edges.iter().copied();
+        let mut edge_faces = Lists::with_room(count, face_edges.len(), at_edges);
+        for face in 0..self.face_count() as u32 {
+            for &edge in &face_edges[self.faces.range(face as usize)] {
+                edge_faces.push(edge, face);
+            }
+        }
+        let ends = edges.iter().flat_map(|edge| edge.vertices);
+        let mut vertex_edges = Lists::with_room(self.vertex_count(), 2 * count, ends);
+        for (number, edge) in (0..).zip(&edges) {
+            vertex_edges.push(edge.vertices[0], number);
+            vertex_edges.push(edge.vertices[1], number);
+        }
+        self.edges = edges;
+        self.next = nexts;
+        self.face_edges = face_edges;
+        self.edge_faces = edge_faces;
+        self.vertex_edges = vertex_edges;
     }
 
     /// The given faces as a topology of their own, with the numbers that its vertices have here.
@@ -185,51 +259,13 @@ impl Topology {
             sharpness,
             self.options,
             |edge, a, b| {
-                let edge = self.edge(edge);
-                let next = [a, b].map(|local| edge.next_at(vertices[local as usize]));
-                (edge.sharpness, next)
+                let next = [a, b].map(|local| self.next_at(edge, vertices[local as usize]));
+                (self.edge(edge).sharpness, next)
             },
         );
         (topology, vertices)
     }
-
-    /// Fills the lists that answer "which faces and edges touch".
-    fn relate(&mut self) {
-        let mut corners = Vec::with_capacity(self.face_vertices.len());
-        for face in 0..self.face_count() as u32 {
-            let arity = self.face(face).len() as u32;
-            corners.extend((0..arity).map(|corner| FaceCorner { face, corner }));
-        }
-        let at_edges = self.face_edges.iter().copied();
-        let faces = corners.iter().map(|corner| corner.face);
-        let at_vertices = self.face_vertices.iter().copied();
-        let ends = self.edges.iter().flat_map(|edge| edge.vertices);
-        let edges = (0..2 * self.edges.len() as u32).map(|end| end / 2);
-        let vertices = self.vertex_count();
-        self.edge_faces = Lists::gather(self.edges.len(), at_edges.zip(faces));
-        self.vertex_faces = Lists::gather(vertices, at_vertices.zip(corners.iter().copied()));
-        self.vertex_edges = Lists::gather(vertices, ends.zip(edges));
-    }
 }
 
-/// For each side of a face, the first side that joins the same two vertices; linear in their number, however many meet in a vertex.
-fn first_alike(vertex_count: usize, sides: &[[u32; 2]]) -> Vec<u32> {
-    let low = |side: usize| sides[side][0].min(sides[side][1]);
-    let by_low = Lists::gather(
-        vertex_count,
-        (0..sides.len()).map(|side| (low(side), side as u32)),
-    );
-    let mut first: Vec<u32> = (0..sides.len() as u32).collect();
-    // By its higher end, the latest side of its own kind; one from another lower end is stale.
-    let mut latest = vec![None; vertex_count];
-    for vertex in 0..vertex_count as u32 {
-        for &side in by_low.get(vertex) {
-            let [a, b] = sides[side as usize];
-            match latest[a.max(b) as usize] {
-                Some((known, low)) if low == vertex => first[side as usize] = known,
-                _ => latest[a.max(b) as usize] = Some((side, vertex)),
-            }
-        }
-    }
-    first
-}
+/// The corners at a vertex are few up to so many: what they show is searched one by one.
+const FEW: usize = 12;

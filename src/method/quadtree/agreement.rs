@@ -1,7 +1,7 @@
 //! Edges that the faces on both sides evaluate with points of their own plans, and get the same bits.
 //!
 //! A point has the same bits in both faces if it is a sum of the same weights over the same vertices in the same order, relative to the same vertex.
-//! Order and origin are the mesh's own (see `Irregular::order`, `Stencil::corner`); that the weights agree in every bit is looked up, edge by edge.
+//! Order and origin are the mesh's own (see `irregular.rs`, `Stencils::corner`); that the weights agree in every bit is looked up, edge by edge.
 //! Where they do not, or where one side has other cells than the other, the edge gets a plan of its own.
 
 use rayon::prelude::*;
@@ -11,14 +11,15 @@ use smallvec::SmallVec;
 use crate::abi;
 use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
-use crate::method::quadtree::irregular::Irregular;
-use crate::plan::{Plan, Stretch, Strip};
+use crate::method::quadtree::irregular::{Irregular, Irregulars};
+use crate::method::quadtree::plain::is_plain;
+use crate::plan::{Plan, SmoothQuads, Stretch, Strip};
 
 /// A patch's edge.
 #[derive(Clone, Copy)]
 struct Side<'a> {
     topology: &'a Topology,
-    patch: &'a Irregular,
+    patch: Irregular<'a>,
     plan: &'a Plan,
     /// The edge of the patch, 0..=3.
     edge: u32,
@@ -30,99 +31,124 @@ struct Side<'a> {
 /// at once.
 pub fn agreed_edges(
     topology: &Topology,
-    plain: &[bool],
-    patches: &[Irregular],
+    smooth: &SmoothQuads<'_>,
+    patches: &Irregulars<'_>,
     plans: &[&Plan],
 ) -> Vec<bool> {
-    let pairs = pairs(topology, plain, patches, plans);
-    let keys: Vec<Key> = pairs
-        .par_iter()
-        .map(|[one, other]| one.key(*other))
-        .collect();
-    let mut known: FxHashMap<&Key, usize> = FxHashMap::default();
-    let mut firsts = Vec::new();
-    let number = |(pair, key)| {
-        *known.entry(key).or_insert_with(|| {
-            firsts.push(pair);
-            firsts.len() - 1
-        })
+    let pairs = pairs(topology, smooth, patches);
+    let side = |number: u32| {
+        let patch = patches.get(number / 4);
+        Side {
+            topology,
+            patch,
+            plan: plans[patch.record.plan as usize],
+            edge: number % 4,
+        }
     };
-    let numbers: Vec<usize> = pairs.iter().zip(&keys).map(number).collect();
+    let mut known: FxHashMap<Key, u32> = FxHashMap::default();
+    let mut firsts = Vec::new();
+    let mut numbers: Vec<u32> = Vec::with_capacity(pairs.len());
+    let mut keys = Vec::new();
+    for pairs in pairs.chunks(AT_A_TIME) {
+        let found = pairs.par_iter();
+        let found = found.map(|&[one, other]| side(one).key(side(other)));
+        found.collect_into_vec(&mut keys);
+        for (pair, key) in pairs.iter().zip(keys.drain(..)) {
+            numbers.push(*known.entry(key).or_insert_with(|| {
+                firsts.push(pair);
+                firsts.len() as u32 - 1
+            }));
+        }
+    }
     let agree: Vec<bool> = firsts
         .par_iter()
-        .map(|[one, other]| one.agrees(*other))
+        .map(|&&[one, other]| side(one).agrees(side(other)))
         .collect();
     let mut agreed = vec![false; topology.edge_count()];
-    for ([side, _], number) in pairs.iter().zip(numbers) {
-        agreed[side.number() as usize] = agree[number];
+    for (&[one, _], number) in pairs.iter().zip(numbers) {
+        agreed[side(one).number() as usize] = agree[number as usize];
     }
     agreed
 }
 
-/// Plans, edges, and which vertices of one ring are which of the other.
-type Key = SmallVec<[u8; 64]>;
+/// Of each vertex of a ring, where it stands in another.
+type Places = SmallVec<[Option<u16>; 32]>;
 
-/// The two sides of each edge that quads with plans have on both, and that is neither plain nor infinitely sharp.
-fn pairs<'a>(
-    topology: &'a Topology,
-    plain: &[bool],
-    patches: &'a [Irregular],
-    plans: &[&'a Plan],
-) -> Vec<[Side<'a>; 2]> {
-    let mut sides: Vec<[Option<u32>; 2]> = vec![[None; 2]; topology.edge_count()];
-    // Sums over longer rings are compensated, and so depend on the weights that are zero.
-    let short = |(_, patch): &(u32, &Irregular)| {
-        patch.ring.vertices.len() <= abi::CONTROL_INVOCATIONS as usize
-            && topology.face(patch.part.face).len() == 4
-    };
-    for (number, patch) in (0..).zip(patches).filter(short) {
-        let edges = topology.face_edges(patch.part.face);
+/// What decides whether two sides agree.
+#[derive(PartialEq, Eq, Hash)]
+enum Key {
+    /// Their plans and edges alone: all is smooth, and no vertex met twice around either face.
+    Smooth([u32; 2]),
+    /// Plans, edges, and which vertices of one ring are which of the other.
+    Any(Box<[u8]>),
+}
+
+/// The two sides of each edge that quads with plans have on both, and that is neither plain nor infinitely sharp; each a number, 4 times the patch and its
+/// edge.
+fn pairs(topology: &Topology, smooth: &SmoothQuads<'_>, patches: &Irregulars<'_>) -> Vec<[u32; 2]> {
+    const NONE: u32 = u32::MAX;
+    let mut of_faces = vec![NONE; topology.face_count()];
+    let mut pairs = Vec::new();
+    for (number, patch) in (0..).zip(patches.iter()) {
+        let face = patch.record.part.face;
+        let edges = topology.face_edges(face);
+        // Sums over longer rings are compensated, and so depend on the weights that are zero.
+        if !patch.is_short() || edges.len() != 4 {
+            continue;
+        }
+        of_faces[face as usize] = number;
+        let turn = patch.turn(topology);
         for edge in 0..4 {
-            let at = edges[((patch.turn(topology) + edge) % 4) as usize];
-            let [first, second] = &mut sides[at as usize];
-            let free = if first.is_none() { first } else { second };
-            *free = Some(4 * number + edge);
+            let at = edges[((turn + edge) % 4) as usize];
+            let &[one, two] = topology.edge_faces(at) else {
+                continue;
+            };
+            let beyond = if one == face { two } else { one };
+            let other = of_faces[beyond as usize];
+            let own = topology.edge(at);
+            let is_plain = || own.vertices.iter().all(|&vertex| is_plain(smooth, vertex));
+            if other == NONE || beyond == face || is_infinite(own.sharpness) || is_plain() {
+                continue;
+            }
+            let edges = topology.face_edges(beyond).iter();
+            let corner = edges.into_iter().position(|&edge| edge == at);
+            let corner = corner.expect("a face on the edge has it") as u32;
+            let turn = patches.get(other).turn(topology);
+            pairs.push([4 * other + (corner + 4 - turn) % 4, 4 * number + edge]);
         }
     }
-    let side = |number: u32| {
-        let patch = &patches[number as usize / 4];
-        Side {
-            topology,
-            patch,
-            plan: plans[patch.plan as usize],
-            edge: number % 4,
-        }
-    };
-    let pair = |(edge, sides): (u32, &[Option<u32>; 2])| {
-        let [Some(one), Some(other)] = *sides else {
-            return None;
-        };
-        let own = topology.edge(edge);
-        let is_plain = own.vertices.iter().all(|&vertex| plain[vertex as usize]);
-        let shared = topology.edge_faces(edge).len() == 2 && !is_infinite(own.sharpness);
-        (shared && !is_plain).then(|| [side(one), side(other)])
-    };
-    (0..).zip(&sides).filter_map(pair).collect()
+    pairs
 }
+
+/// So many pairs are looked at between two looks at what is known.
+const AT_A_TIME: usize = 1 << 13;
 
 impl Side<'_> {
     /// The edge of the mesh.
     fn number(self) -> u32 {
         let corner = (self.patch.turn(self.topology) + self.edge) % 4;
-        self.topology.face_edges(self.patch.part.face)[corner as usize]
+        self.topology.face_edges(self.patch.record.part.face)[corner as usize]
     }
 
     fn key(self, other: Side<'_>) -> Key {
-        let mut key = Key::new();
-        for side in [self, other] {
-            let flags = u8::from(side.patch.ring.mirrored) | u8::from(side.is_flipped()) << 1;
-            key.extend(side.patch.plan.to_le_bytes());
-            key.push(side.edge as u8 | flags << 2);
+        let words = [self, other].map(|side| {
+            let flags = u32::from(side.patch.record.mirrored) | u32::from(side.is_flipped()) << 1;
+            side.edge | flags << 2 | side.patch.record.plan << 4
+        });
+        if self.is_smooth_with(other) {
+            return Key::Smooth(words);
         }
         // Short rings alone: a byte holds a place.
         let place = |&vertex: &u32| other.patch.place(vertex).map_or(u8::MAX, |at| at as u8);
-        key.extend(self.patch.ring.vertices.iter().map(place));
-        key
+        let mut key: SmallVec<[u8; 64]> = SmallVec::new();
+        words.iter().for_each(|word| key.extend(word.to_le_bytes()));
+        key.extend(self.patch.vertices.iter().map(place));
+        Key::Any(key.as_slice().into())
+    }
+
+    /// Whether both faces and all around them are smooth, see [`Key::Smooth`].
+    fn is_smooth_with(self, other: Side<'_>) -> bool {
+        self.patch.record.is_smooth && other.patch.record.is_smooth
     }
 
     fn is_flipped(self) -> bool {
@@ -143,15 +169,37 @@ impl Side<'_> {
         let (Some(one), Some(two)) = (self.strip(), other.strip()) else {
             return false;
         };
+        let places = self.places_in(other);
         self.is_flipped() != other.is_flipped()
             && one.stretches().count() == two.stretches().count()
             && one
                 .stretches()
                 .zip(two.stretches())
-                .all(|(one, two)| self.has_same(one, other, two))
+                .all(|(one, two)| self.has_same(one, other, two, &places))
     }
 
-    fn has_same(self, own: &Stretch, other: Side<'_>, others: &Stretch) -> bool {
+    /// Where the vertices of this side's ring stand in the other's. Of smooth faces only those around the edge count: others may be the same in some pairs
+    /// of faces, and not in others that have the same key.
+    fn places_in(self, other: Side<'_>) -> Places {
+        let is_smooth = self.is_smooth_with(other);
+        let ends = self.topology.edge(self.number()).vertices;
+        let faces = ends.iter().flat_map(|&end| self.topology.vertex_faces(end));
+        let around = faces.flat_map(|at| self.topology.face(at.face));
+        let around: SmallVec<[u32; 64]> = around.copied().collect();
+        let place = |&vertex: &u32| {
+            let counts = !is_smooth || around.contains(&vertex);
+            other.patch.place(vertex).filter(|_| counts)
+        };
+        self.patch.vertices.iter().map(place).collect()
+    }
+
+    fn has_same(
+        self,
+        own: &Stretch,
+        other: Side<'_>,
+        others: &Stretch,
+        places: &[Option<u16>],
+    ) -> bool {
         if (own.depth, own.at, own.crease) != (others.depth, others.at, others.crease) {
             return false;
         }
@@ -164,24 +212,26 @@ impl Side<'_> {
             .zip(other_points.iter().flatten());
         let mut pairs = points.chain([(&own.base, &others.base)]);
         pairs.all(|(&own, &others)| {
-            self.origin(own) == other.origin(others) && self.terms(own).eq(other.terms(others))
+            self.origin(own) == other.origin(others) && self.has_terms(own, other, others, places)
         })
+    }
+
+    /// Whether two points are sums of the same: the order is that of the vertices' numbers in the mesh.
+    fn has_terms(self, own: u32, other: Side<'_>, others: u32, places: &[Option<u16>]) -> bool {
+        let mut weights = [0.0; abi::CONTROL_INVOCATIONS as usize];
+        let stencils = &other.plan.stencils;
+        let expected = stencils.each_term(others as usize, |at, weight| weights[at] = weight);
+        let mut same = true;
+        let count = self.plan.stencils.each_term(own as usize, |at, weight| {
+            same &= places[at].is_some_and(|at| weights[usize::from(at)] == weight);
+        });
+        same && count == expected
     }
 
     /// The vertex that a point is relative to.
     fn origin(self, point: u32) -> Option<u32> {
-        let corner = self.plan.stencils[point as usize].corner?;
+        let corner = self.plan.stencils.corner(point as usize)?;
         let corner = (self.patch.turn(self.topology) + self.patch.corner(corner)) % 4;
-        Some(self.topology.face(self.patch.part.face)[corner as usize])
-    }
-
-    /// What a point is a sum of, in the order in which it is added.
-    fn terms(&self, point: u32) -> impl Iterator<Item = (u32, u32)> {
-        let weights = &self.plan.stencils[point as usize].weights;
-        let vertices = &self.patch.ring.vertices;
-        self.patch.order.iter().filter_map(move |&place| {
-            let weight = weights[place as usize] as f32;
-            (weight != 0.0).then(|| (vertices[place as usize], weight.to_bits()))
-        })
+        Some(self.topology.face(self.patch.record.part.face)[corner as usize])
     }
 }

@@ -5,8 +5,9 @@
 //! whose sums are symmetric give the same bits to all sides by themselves, to patches without plans as well. And where the plans of both faces on an
 //! edge have the same points along it, each evaluates it with its own (see `agreement.rs`).
 
+use std::rc::Rc;
+
 use bytemuck::{AnyBitPattern, NoUninit};
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::{SmallVec, smallvec};
 
@@ -15,12 +16,11 @@ use crate::error::{Error, Misuse, Result};
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
 use crate::method::quadtree::agreement::agreed_edges;
-use crate::method::quadtree::irregular::Irregular;
+use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
-use crate::method::quadtree::plain::{edge_rows, is_turned_corner, vertex_rows};
-use crate::method::quadtree::subjects::{Line, Point, Shared};
-use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side};
-use crate::subdivision::is_plain_vertex;
+use crate::method::quadtree::plain::{edge_rows, is_plain, is_turned_corner, vertex_rows};
+use crate::method::quadtree::subjects::{Known, Line, Point, Shared, Subject};
+use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side, SmoothQuads};
 
 /// The levels that a patch can be drawn at.
 const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
@@ -34,8 +34,10 @@ const HALVES: u32 = abi::USE_FIRST_HALF | abi::USE_SECOND_HALF;
 pub struct Given<'a> {
     /// The mesh.
     pub topology: &'a Topology,
+    /// What is smooth in it.
+    pub smooth: &'a SmoothQuads<'a>,
     /// Its irregular patches.
-    pub patches: &'a [Irregular],
+    pub patches: &'a Irregulars<'a>,
     /// The plans of their insides.
     pub plans: &'a [&'a Plan],
 }
@@ -104,36 +106,35 @@ impl Borders {
     ) -> Result<Borders> {
         let Given {
             topology,
+            smooth,
             patches,
             plans,
         } = given;
-        let vertices = 0..topology.vertex_count() as u32;
-        let plain: Vec<bool> = vertices
-            .into_par_iter()
-            .map(|vertex| is_plain_vertex(topology, vertex))
-            .collect();
-        let agreed = agreed_edges(topology, &plain, patches, plans);
+        let agreed = agreed_edges(topology, smooth, patches, plans);
         let is_settled = |edge: u32| {
             let ends = topology.edge(edge).vertices;
-            agreed[edge as usize] || ends.iter().all(|&vertex| plain[vertex as usize])
+            agreed[edge as usize] || ends.iter().all(|&vertex| is_plain(smooth, vertex))
         };
-        let lines = patches.iter().flat_map(|patch| {
-            let lines = lines(topology, patch.part, patch.turn(topology));
+        let lines = patches.records.iter().flat_map(|record| {
+            let lines = lines(topology, record.part, record.turn(topology));
             lines.into_iter().map(|(line, ..)| line)
         });
         let lines = lines.filter(|&line| !matches!(line, Line::Edge(edge) if is_settled(edge)));
-        let lines = Shared::new(topology, lines, packed, options, database)?;
-        let vertices = patches.iter().flat_map(|patch| {
-            let points = points(topology, patch.part, patch.turn(topology));
+        let lines = Shared::new(topology, smooth, lines, packed, options, database)?;
+        let vertices = patches.records.iter().flat_map(|record| {
+            let points = points(topology, record.part, record.turn(topology));
             points.into_iter().flatten()
         });
         let vertices = vertices
-            .filter(|&point| !matches!(point, Point::Vertex(vertex) if plain[vertex as usize]));
-        let vertices = Shared::new(topology, vertices, packed, options, database)?;
+            .filter(|&point| !matches!(point, Point::Vertex(vertex) if is_plain(smooth, vertex)));
+        let vertices = Shared::new(topology, smooth, vertices, packed, options, database)?;
         let mut builder = Builder {
             topology,
+            smooth,
             plans,
             agreed: &agreed,
+            in_ring: vec![u16::MAX; topology.vertex_count()],
+            stars: FxHashMap::default(),
             strips: FxHashMap::default(),
             lines: &lines,
             vertices: &vertices,
@@ -149,10 +150,21 @@ impl Borders {
                 ..Borders::default()
             },
         };
-        for patch in patches {
-            let border = builder.border(patch)?;
-            let records = &mut builder.found.records;
-            let number = numbered(&mut builder.borders, records, border);
+        let mut smooth_borders = FxHashMap::default();
+        for patch in patches.iter() {
+            let looks = patch.record.is_smooth.then(|| builder.looks(patch));
+            let known = looks.and_then(|looks| smooth_borders.get(&looks));
+            let number = match known {
+                Some(&known) => known,
+                None => {
+                    let border = builder.border(patch)?;
+                    let records = &mut builder.found.records;
+                    numbered(&mut builder.borders, records, border)
+                }
+            };
+            if let Some(looks) = looks {
+                smooth_borders.insert(looks, number);
+            }
             builder.found.numbers.push(number);
         }
         Ok(builder.found)
@@ -162,13 +174,18 @@ impl Borders {
 /// Puts borders together.
 struct Builder<'a> {
     topology: &'a Topology,
+    smooth: &'a SmoothQuads<'a>,
     /// The plans of the insides.
     plans: &'a [&'a Plan],
     agreed: &'a [bool],
     /// Roots of the trees of agreed edges, by plan, edge, whether the patch is mirrored, and whether the edge is flipped.
     strips: FxHashMap<(u32, u32, bool, bool), u32>,
-    lines: &'a Shared<Line>,
-    vertices: &'a Shared<Point>,
+    lines: &'a Shared,
+    vertices: &'a Shared,
+    /// By vertex, where it stands in the ring of the patch at hand, if it does.
+    in_ring: Vec<u16>,
+    /// The rings of points that have none of their own.
+    stars: FxHashMap<usize, Rc<Ring>>,
     packed: &'a mut PackedPlans,
     /// Where lists of places begin.
     lists: FxHashMap<List, u32>,
@@ -194,7 +211,8 @@ fn numbered<T: NoUninit + AnyBitPattern, const N: usize>(
 
 /// The plain vertices of a patch as they are met, as places in its ring.
 struct Plain<'a> {
-    patch: &'a Irregular,
+    /// Where in the patch's ring the vertices of the mesh stand that are in it.
+    in_ring: &'a [u16],
     /// The plain vertices, as places.
     places: &'a mut List,
     /// Their numbers by place, once they are met.
@@ -206,8 +224,9 @@ type List = SmallVec<[u32; 32]>;
 
 impl Plain<'_> {
     fn place(&self, vertex: u32) -> u32 {
-        let place = self.patch.place(vertex);
-        u32::from(place.expect("what a patch shares is in its ring"))
+        let place = self.in_ring[vertex as usize];
+        assert_ne!(place, u16::MAX, "what a patch shares is in its ring");
+        place.into()
     }
 
     /// The number, among the plain points, of a vertex of the mesh.
@@ -254,20 +273,57 @@ fn ends(plain: u32, counts: &[[u32; LEVELS]; USES]) -> Result<abi::Ends> {
 }
 
 impl Builder<'_> {
-    fn border(&mut self, patch: &Irregular) -> Result<abi::Border> {
+    /// What decides which border a patch has around which all is smooth: its plan, what its edges are, and at its corners where it stands among the faces
+    /// around.
+    fn looks(&self, patch: Irregular<'_>) -> [u32; 9] {
         let (topology, turn) = (self.topology, patch.turn(self.topology));
+        let record = patch.record;
+        let face = record.part.face;
+        let (vertices, edges) = (topology.face(face), topology.face_edges(face));
+        let mut looks = [0; 9];
+        looks[0] = record.plan << 1 | u32::from(record.mirrored);
+        for i in 0..4 {
+            let corner = (turn + i) % 4;
+            let (from, edge) = (vertices[corner as usize], edges[corner as usize]);
+            let flipped = from != topology.edge(edge).vertices[0];
+            looks[1 + i as usize] = match self.lines.get(topology, Line::Edge(edge)) {
+                _ if self.agreed[edge as usize] => 2 | u32::from(flipped),
+                None => 0,
+                Some(Known { plan, ring }) => {
+                    let ring = ring.as_deref().expect("lines have rings");
+                    let against = u32::from(from != ring.vertices[0]);
+                    let beyond = u32::from(face != ring.faces[0]);
+                    4 + (plan << 2 | against << 1 | beyond)
+                }
+            };
+            let point = self.vertices.get(topology, Point::Vertex(from));
+            looks[5 + i as usize] = match point {
+                None => is_turned_corner(topology, self.smooth, face, corner).into(),
+                Some(known) => 2 + (known.plan << 5 | self.smooth.place_around(face, corner)),
+            };
+        }
+        looks
+    }
+
+    fn border(&mut self, patch: Irregular<'_>) -> Result<abi::Border> {
+        let (topology, smooth, turn) = (self.topology, self.smooth, patch.turn(self.topology));
+        let part = patch.record.part;
         let mut uses = [abi::Use::default(); USES];
         let mut counts = [[0; LEVELS]; USES];
-        let [inside @ .., _] = self.plan(&mut uses[0], patch.plan);
+        let [inside @ .., _] = self.plan(&mut uses[0], patch.record.plan);
         counts[0] = inside;
-        let nearby = self.packed.nearby[patch.plan as usize];
+        let nearby = self.packed.nearby[patch.record.plan as usize];
         let mut places = List::new();
+        let mut in_ring = std::mem::take(&mut self.in_ring);
+        for (place, &vertex) in (0..).zip(patch.vertices) {
+            in_ring[vertex as usize] = place;
+        }
         let mut plain = Plain {
-            patch,
+            in_ring: &in_ring,
             places: &mut places,
-            numbers: smallvec![u32::MAX; patch.ring.vertices.len()],
+            numbers: smallvec![u32::MAX; patch.vertices.len()],
         };
-        for (edge, (line, flags, corner)) in (0..).zip(lines(topology, patch.part, turn)) {
+        for (edge, (line, flags, corner)) in (0..).zip(lines(topology, part, turn)) {
             let number = 1 + edge as usize;
             if matches!(line, Line::Edge(edge) if self.agreed[edge as usize]) {
                 let flipped = patch.is_flipped(topology, edge);
@@ -277,13 +333,14 @@ impl Builder<'_> {
                 uses[number].root = self.strip(patch, edge, flipped);
                 continue;
             }
-            match self.lines.known.get(&line) {
-                Some((ring, plan)) => {
-                    let flags = flags ^ self.line_flags(patch.part.face, corner, line, ring, *plan);
+            match self.lines.get(topology, line) {
+                Some(known) => {
+                    let ring = known.ring.as_deref().expect("lines have rings");
+                    let flags = flags ^ self.line_flags(part.face, corner, line, ring, known.plan);
                     let flipped = 2 * (flags & abi::USE_FLIPPED);
                     uses[number].flags = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
                     uses[number].ring = self.places(ring, &plain);
-                    let plan = self.lines.first + *plan as u32;
+                    let plan = self.lines.first + known.plan;
                     let found = self.plan(&mut uses[number], plan);
                     // Half of an edge needs what is one level deeper in the whole.
                     let deeper = usize::from(flags & HALVES != 0);
@@ -291,12 +348,12 @@ impl Builder<'_> {
                 }
                 None => {
                     uses[number].flags = edge << abi::USE_TURN_SHIFT;
-                    let vertices = edge_rows(topology, patch.part.face, corner);
+                    let vertices = edge_rows(smooth, part.face, corner);
                     uses[number].root = self.plain_node(vertices.map(|vertex| plain.point(vertex)));
                 }
             }
         }
-        for (corner, point) in (0..).zip(points(topology, patch.part, turn)) {
+        for (corner, point) in (0..).zip(points(topology, part, turn)) {
             let number = 5 + corner as usize;
             // Points near a corner are relative to its vertex; near the middle of an edge, to that of the n-gon's corner.
             let own = if point.is_some() {
@@ -304,46 +361,57 @@ impl Builder<'_> {
             } else {
                 0
             };
-            uses[number].ring = self.list(patch, smallvec![own]);
+            uses[number].ring = self.list(patch.vertices.len(), &[own]);
             let Some(point) = point else { continue };
-            match self.vertices.known.get(&point) {
-                Some((ring, plan)) => {
-                    let local = ring.faces.iter().position(|&face| face == patch.part.face);
-                    let (sides, planes) = self.vertices.plans[*plan].vertex_sides();
+            match self.vertices.get(topology, point) {
+                Some(known) => {
+                    let star = known.ring.is_none().then(|| {
+                        let stars = self.stars.entry(point.number(topology));
+                        stars.or_insert_with(|| point.ring(topology).into()).clone()
+                    });
+                    let ring = known.ring.as_deref().or(star.as_deref());
+                    let ring = ring.expect("it is kept, or was just found");
+                    let local = ring.faces.iter().position(|&face| face == part.face);
+                    let (sides, planes) = self.vertices.plans[known.plan as usize].vertex_sides();
                     let side = match point {
                         Point::Vertex(_) => sides[local.expect("the face has the vertex")],
                         Point::Centre(_) => sides[0],
                     };
                     uses[number].flags = side_flags(side, planes > 1);
                     uses[number].ring = self.places(ring, &plain);
-                    self.plan(&mut uses[number], self.vertices.first + *plan as u32);
+                    self.plan(&mut uses[number], self.vertices.first + known.plan);
                     uses[number].root = nearby[patch.corner(corner) as usize];
                     // Position and normal.
                     counts[number] = [2; LEVELS];
                 }
                 None => {
                     let face_corner = (turn + corner) % 4;
-                    let turned = is_turned_corner(topology, patch.part.face, face_corner);
+                    let turned = is_turned_corner(topology, smooth, part.face, face_corner);
                     let quarters = (corner + u32::from(turned)) % 4;
                     uses[number].flags = quarters << abi::USE_TURN_SHIFT;
-                    let vertices = vertex_rows(topology, patch.part.face, face_corner, turned);
+                    let vertices = vertex_rows(smooth, part.face, face_corner, turned);
                     uses[number].root = self.plain_node(vertices.map(|vertex| plain.point(vertex)));
                 }
             }
         }
+        for &vertex in patch.vertices {
+            in_ring[vertex as usize] = u16::MAX;
+        }
+        self.in_ring = in_ring;
         let plain_count = places.len() as u32;
         let ends = ends(plain_count, &counts)?;
         Ok(abi::Border {
             uses: uses.map(|used| numbered(&mut self.uses, &mut self.found.uses, used)),
-            plain: self.list(patch, places),
+            plain: self.list(patch.vertices.len(), &places),
             plain_count,
             ends: numbered(&mut self.ends, &mut self.found.ends, ends),
         })
     }
 
     /// The root of the tree of an edge that is evaluated with the points of an inside's plan.
-    fn strip(&mut self, patch: &Irregular, edge: u32, flipped: bool) -> u32 {
-        let plan = self.plans[patch.plan as usize];
+    fn strip(&mut self, patch: Irregular<'_>, edge: u32, flipped: bool) -> u32 {
+        let (number, mirrored) = (patch.record.plan, patch.record.mirrored);
+        let plan = self.plans[number as usize];
         let packed = &mut *self.packed;
         let push = || {
             let strip = patch.strip(plan, edge);
@@ -356,14 +424,14 @@ impl Builder<'_> {
         };
         *self
             .strips
-            .entry((patch.plan, edge, patch.ring.mirrored, flipped))
+            .entry((number, edge, mirrored, flipped))
             .or_insert_with(push)
     }
 
     /// Which side of the line the face is on, and whether it runs the other way.
-    fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: usize) -> u32 {
+    fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: u32) -> u32 {
         let Line::Edge(_) = line else { return 0 };
-        let sides = self.lines.plans[plan].edge_sides();
+        let sides = self.lines.plans[plan as usize].edge_sides();
         let local = |&side: &u32| ring.faces[side as usize] == face;
         let side = sides.iter().position(local).unwrap_or(0) as u32;
         let creased = if sides.len() > 1 { abi::USE_CREASED } else { 0 };
@@ -381,14 +449,16 @@ impl Builder<'_> {
     /// Where it stands which vertices of the patch's ring a plan's ring has.
     fn places(&mut self, ring: &Ring, plain: &Plain<'_>) -> u32 {
         let places = ring.vertices.iter().map(|&vertex| plain.place(vertex));
-        self.list(plain.patch, places.collect())
+        let places: List = places.collect();
+        self.list(plain.numbers.len(), &places)
     }
 
-    /// Where a list of places in the patch's ring begins.
-    fn list(&mut self, patch: &Irregular, places: List) -> u32 {
+    /// Where a list of places in a patch's ring of this size begins.
+    fn list(&mut self, ring: usize, places: &[u32]) -> u32 {
         let all = &mut self.found.places;
-        let words = places::pack(patch.ring.vertices.len(), &places).collect();
-        *self.lists.entry(words).or_insert_with_key(|words: &List| {
+        let mut words = Vec::new();
+        places::push(&mut words, ring, places.iter().copied());
+        *self.lists.entry(List::from_vec(words)).or_insert_with_key(|words: &List| {
             all.extend_from_slice(words);
             (all.len() - words.len()) as u32
         })

@@ -25,6 +25,15 @@ const SUMS: u64 = 128;
 /// [`Error::Input`] with the vertex or face that has the most around it.
 pub fn check(model: &Model) -> Result<()> {
     let topology = model.topology();
+    let faces = 0..topology.face_count() as u32;
+    let corners = faces.map(|face| topology.face(face).len() as u64).max();
+    let vertices = 0..topology.vertex_count() as u32;
+    let meeting = vertices.map(|vertex| topology.vertex_faces(vertex).len() as u64);
+    // Most meshes have nothing large anywhere.
+    let (corners, meeting) = (corners.unwrap_or(0), meeting.max().unwrap_or(0));
+    if corners.saturating_mul(corners).saturating_mul(meeting) <= ORDINARY {
+        return Ok(());
+    }
     let around = |vertex: u32| -> u64 {
         let faces = topology.vertex_faces(vertex).iter();
         faces.map(|at| topology.face(at.face).len() as u64).sum()

@@ -1,51 +1,112 @@
 //! Patches that need plans.
 
+use crate::abi;
 use crate::mesh::topology::Topology;
+use crate::method::Pass;
 use crate::method::patches::Part;
-use crate::plan::{Plan, Ring, Strip};
+use crate::method::quadtree::places::{self, place_at};
+use crate::plan::{Plan, Strip};
 
-/// An irregular patch: its part, its ring, and the number of its plan.
-pub struct Irregular {
+/// What an irregular patch is, apart from its ring.
+#[derive(Clone, Copy)]
+pub struct Record {
     pub part: Part,
-    pub ring: Ring,
+    /// The number of its plan.
     pub plan: u32,
-    /// The order in which stencils of the inside are summed: places in the ring, by the vertices' numbers in the mesh. So faces add what they share in
-    /// the same order, whatever else there is in their rings.
-    pub order: Vec<u16>,
+    /// The vertices of its ring.
+    pub ring_size: u32,
+    /// As [`Ring::start`](crate::plan::Ring::start), of quads.
+    pub start: u8,
+    /// As [`Ring::mirrored`](crate::plan::Ring::mirrored).
+    pub mirrored: bool,
+    /// Whether all around it is smooth, and no vertex met twice: then the plan tells how the vertices of its ring hang together.
+    pub is_smooth: bool,
 }
 
-impl Irregular {
-    pub fn new(part: Part, ring: Ring, plan: u32) -> Irregular {
-        let mut order: Vec<u16> = (0..ring.vertices.len() as u16).collect();
-        order.sort_unstable_by_key(|&place| ring.vertices[place as usize]);
+/// The irregular patches of a pass. A patch's control vertices are its ring and, behind that, the order in which stencils of the inside are summed: places
+/// in the ring, by the vertices' numbers in the mesh. So faces add what they share in the same order, whatever else there is in their rings.
+pub struct Irregulars<'a> {
+    pub records: &'a [Record],
+    pub pass: &'a Pass,
+}
+
+/// An irregular patch.
+#[derive(Clone, Copy)]
+pub struct Irregular<'a> {
+    pub record: &'a Record,
+    /// Its ring.
+    pub vertices: &'a [u32],
+    order: &'a [u32],
+}
+
+/// Appends a ring and its order, see [`Irregulars`].
+pub fn push_ring(controls: &mut Vec<u32>, vertices: &[u32], order: impl Iterator<Item = u16>) {
+    controls.extend_from_slice(vertices);
+    places::push(controls, vertices.len(), order.map(u32::from));
+}
+
+/// The order of a ring's places, see [`Irregulars`].
+pub fn order(vertices: &[u32]) -> Vec<u16> {
+    let mut order: Vec<u16> = (0..vertices.len() as u16).collect();
+    order.sort_unstable_by_key(|&place| vertices[place as usize]);
+    order
+}
+
+impl<'a> Irregulars<'a> {
+    /// Patch `number`.
+    pub fn get(&self, number: u32) -> Irregular<'a> {
+        let record = &self.records[number as usize];
+        let first = self.pass.patches[number as usize].controls as usize;
+        let count = record.ring_size as usize;
+        let own = &self.pass.controls[first..first + count + places::words(count, count)];
+        let (vertices, order) = own.split_at(count);
         Irregular {
-            part,
-            ring,
-            plan,
+            record,
+            vertices,
             order,
         }
     }
 
+    /// Every patch.
+    pub fn iter(&self) -> impl Iterator<Item = Irregular<'a>> {
+        (0..self.records.len() as u32).map(|number| self.get(number))
+    }
+}
+
+impl Irregular<'_> {
+    /// The place that comes `i`th in the order.
+    fn ordered(&self, i: usize) -> u16 {
+        place_at(self.vertices.len(), self.order, i) as u16
+    }
+
     /// Where a vertex of the mesh stands in the ring; none where it does not.
     pub fn place(&self, vertex: u32) -> Option<u16> {
-        let vertices = &self.ring.vertices;
-        let of = |&place: &u16| vertices[place as usize];
-        let at = self.order.binary_search_by_key(&vertex, of).ok()?;
-        Some(self.order[at])
+        let (mut low, mut high) = (0, self.vertices.len());
+        while low < high {
+            let middle = (low + high) / 2;
+            let place = self.ordered(middle);
+            match self.vertices[place as usize].cmp(&vertex) {
+                std::cmp::Ordering::Less => low = middle + 1,
+                std::cmp::Ordering::Greater => high = middle,
+                std::cmp::Ordering::Equal => return Some(place),
+            }
+        }
+        None
+    }
+
+    /// Whether its ring is one that one invocation of the control shader can have a vertex of each.
+    pub fn is_short(&self) -> bool {
+        self.vertices.len() <= abi::CONTROL_INVOCATIONS as usize
     }
 
     /// The corner of the quad at which the patch begins.
     pub fn turn(&self, topology: &Topology) -> u32 {
-        if topology.face(self.part.face).len() == 4 {
-            self.ring.start
-        } else {
-            0
-        }
+        self.record.turn(topology)
     }
 
     /// The corner of the patch that is corner 0..=3 of its plan, and the other way round: a mirrored plan has u and v exchanged.
     pub fn corner(&self, corner: u32) -> u32 {
-        if self.ring.mirrored {
+        if self.record.mirrored {
             (4 - corner) % 4
         } else {
             corner
@@ -54,13 +115,13 @@ impl Irregular {
 
     /// The edge of the patch that is edge 0..=3 of its plan, and the other way round.
     pub fn edge(&self, edge: u32) -> u32 {
-        if self.ring.mirrored { 3 - edge } else { edge }
+        if self.record.mirrored { 3 - edge } else { edge }
     }
 
     /// The cells of its plan along edge 0..=3 of the patch, in the patch's direction.
     pub fn strip(&self, plan: &Plan, edge: u32) -> Option<Strip> {
         let strip = plan.strips[self.edge(edge) as usize].as_ref()?;
-        Some(if self.ring.mirrored {
+        Some(if self.record.mirrored {
             strip.mirrored()
         } else {
             strip.clone()
@@ -70,7 +131,18 @@ impl Irregular {
     /// Whether edge 0..=3 of a quad's patch runs against the direction of the mesh's edge.
     pub fn is_flipped(&self, topology: &Topology, edge: u32) -> bool {
         let corner = ((self.turn(topology) + edge) % 4) as usize;
-        let number = topology.face_edges(self.part.face)[corner];
-        topology.face(self.part.face)[corner] != topology.edge(number).vertices[0]
+        let face = self.record.part.face;
+        let number = topology.face_edges(face)[corner];
+        topology.face(face)[corner] != topology.edge(number).vertices[0]
+    }
+}
+
+impl Record {
+    /// The corner of the quad at which the patch begins.
+    pub fn turn(&self, topology: &Topology) -> u32 {
+        match topology.face(self.part.face).len() {
+            4 => self.start.into(),
+            _ => 0,
+        }
     }
 }

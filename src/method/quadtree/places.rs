@@ -11,13 +11,25 @@ fn bits(ring: usize) -> u32 {
     }
 }
 
-/// The words of a list of places in a ring of this size.
-pub fn pack(ring: usize, places: &[u32]) -> impl Iterator<Item = u32> {
+/// How many words a list of so many places in a ring of this size takes.
+pub fn words(ring: usize, count: usize) -> usize {
+    count.div_ceil((32 / bits(ring)) as usize)
+}
+
+/// Appends a list of places in a ring of this size.
+pub fn push(words: &mut Vec<u32>, ring: usize, places: impl IntoIterator<Item = u32>) {
     let bits = bits(ring);
-    places.chunks((32 / bits) as usize).map(move |places| {
-        let places = places.iter().rev();
-        places.fold(0, |word, &place| word << bits | place)
-    })
+    let mut shift = 32;
+    for place in places {
+        if shift + bits > 32 {
+            words.push(0);
+            shift = 0;
+        }
+        if let Some(word) = words.last_mut() {
+            *word |= place << shift;
+        }
+        shift += bits;
+    }
 }
 
 /// Place `i` of the list that begins with `words`.
@@ -33,10 +45,12 @@ mod tests {
 
     #[test]
     fn places_are_read_as_they_were_packed() {
-        for (ring, count, words) in [(32, 32, 6), (33, 33, 17), (7, 6, 1), (7, 7, 2)] {
+        for (ring, count, expected) in [(32, 32, 6), (33, 33, 17), (7, 6, 1), (7, 7, 2)] {
             let places: Vec<u32> = (0..count).map(|i| (i * 7) % ring).collect();
-            let packed: Vec<u32> = pack(ring as usize, &places).collect();
-            assert_eq!(packed.len(), words);
+            let mut packed = Vec::new();
+            push(&mut packed, ring as usize, places.iter().copied());
+            assert_eq!(packed.len(), expected);
+            assert_eq!(words(ring as usize, places.len()), expected);
             let read = (0..places.len()).map(|i| place_at(ring as usize, &packed, i));
             assert!(read.eq(places.iter().copied()), "{ring}");
         }

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::plan::database::{Entry, Kind};
-use crate::plan::{Configuration, Database, PackedPlans, PlanOptions, Ring};
+use crate::plan::{Configuration, Database, PackedPlans, PlanOptions, Ring, SmoothQuads};
 
 /// An edge of a patch that has a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,9 +27,13 @@ pub enum Point {
 }
 
 /// Something that has a plan of its own, and shares it with what looks alike.
-pub trait Subject: Copy + Eq + std::hash::Hash + Send + Sync {
+pub trait Subject: Copy + Send + Sync {
     fn ring(self, topology: &Topology) -> Ring;
     fn kind(self) -> Kind;
+    /// A number of its own.
+    fn number(self, topology: &Topology) -> usize;
+    /// A number that those share which look alike at first sight; None where that takes a closer look.
+    fn looks(self, smooth: &SmoothQuads<'_>) -> Option<u32>;
 }
 
 impl Subject for Line {
@@ -47,6 +51,19 @@ impl Subject for Line {
             Line::Spoke { .. } => Kind::Spoke,
         }
     }
+
+    fn number(self, topology: &Topology) -> usize {
+        match self {
+            Line::Edge(edge) => edge as usize,
+            Line::Spoke { face, corner } => {
+                topology.edge_count() + topology.side(face, corner) as usize
+            }
+        }
+    }
+
+    fn looks(self, _: &SmoothQuads<'_>) -> Option<u32> {
+        None
+    }
 }
 
 impl Subject for Point {
@@ -62,6 +79,22 @@ impl Subject for Point {
         match self {
             Point::Vertex(_) => Kind::Vertex,
             Point::Centre(_) => Kind::Centre,
+        }
+    }
+
+    fn number(self, topology: &Topology) -> usize {
+        match self {
+            Point::Vertex(vertex) => vertex as usize,
+            Point::Centre(face) => topology.vertex_count() + face as usize,
+        }
+    }
+
+    fn looks(self, smooth: &SmoothQuads<'_>) -> Option<u32> {
+        match self {
+            Point::Vertex(vertex) if smooth.is_simple_star(vertex) => {
+                smooth.valence(vertex).map(|valence| valence as u32)
+            }
+            _ => None,
         }
     }
 }
@@ -106,43 +139,103 @@ impl Planned {
     }
 }
 
+/// A subject's plan and ring.
+pub struct Known {
+    /// The number of its plan.
+    pub plan: u32,
+    /// Its ring, which is not kept of what looks alike at first sight.
+    pub ring: Option<Box<Ring>>,
+}
+
 /// The rings and plans of subjects of one kind.
-pub struct Shared<S: Subject> {
-    /// Each subject's ring, and the number of its plan.
-    pub known: FxHashMap<S, (Ring, usize)>,
+pub struct Shared {
+    known: Vec<Known>,
+    /// Of each subject, by its number, where it stands there.
+    places: Vec<u32>,
     pub plans: Vec<Arc<Entry>>,
     /// The number of the first among all packed plans.
     pub first: u32,
 }
 
-impl<S: Subject> Shared<S> {
-    pub fn new(
+impl Shared {
+    pub fn new<S: Subject>(
         topology: &Topology,
+        smooth: &SmoothQuads<'_>,
         subjects: impl Iterator<Item = S>,
         packed: &mut PackedPlans,
         options: PlanOptions,
         database: &Database,
-    ) -> Result<Shared<S>> {
-        let mut seen = FxHashSet::default();
-        let subjects: Vec<S> = subjects.filter(|&subject| seen.insert(subject)).collect();
-        let rings: Vec<Ring> = subjects
+    ) -> Result<Shared> {
+        let mut places: Vec<u32> = Vec::new();
+        let mut all: Vec<S> = Vec::new();
+        for subject in subjects {
+            let number = subject.number(topology);
+            if number >= places.len() {
+                let size = (number + 1).next_power_of_two();
+                places.resize(size, NONE);
+            }
+            if places[number] == NONE {
+                places[number] = all.len() as u32;
+                all.push(subject);
+            }
+        }
+        let looks: Vec<Option<u32>> = all
             .par_iter()
-            .map(|&subject| subject.ring(topology))
+            .map(|subject| subject.looks(smooth))
             .collect();
-        let wanted = subjects.iter().zip(&rings);
-        let wanted = wanted.map(|(subject, ring)| (subject.kind(), &ring.configuration));
+        let mut first_looks = FxHashMap::default();
+        let mut rings: Vec<Option<Box<Ring>>> = all
+            .par_iter()
+            .zip(&looks)
+            .map(|(subject, looks)| looks.is_none().then(|| Box::new(subject.ring(topology))))
+            .collect();
+        for ((looks, subject), ring) in looks.iter().zip(&all).zip(&mut rings) {
+            if let Some(looks) = looks {
+                first_looks.entry(*looks).or_insert_with(|| {
+                    *ring = Some(Box::new(subject.ring(topology)));
+                });
+            }
+        }
+        let wanted = all.iter().zip(&rings).filter_map(|(subject, ring)| {
+            let ring = ring.as_ref()?;
+            Some((subject.kind(), &ring.configuration))
+        });
         let Planned { numbers, plans } = Planned::new(wanted, options, database)?;
         let first = packed.headers.len() as u32;
         for plan in &plans {
             packed.push(plan.plan())?;
         }
-        let rings = rings
-            .into_iter()
-            .zip(numbers.into_iter().map(|number| number as usize));
+        let mut numbers = numbers.into_iter();
+        let mut plan_of_looks = FxHashMap::default();
+        let known = looks.into_iter().zip(rings).map(|(looks, ring)| {
+            let mut next = || numbers.next().expect("each ring has a plan");
+            match (looks, ring) {
+                (None, ring) => Known { plan: next(), ring },
+                (Some(looks), Some(_)) => {
+                    let plan = next();
+                    plan_of_looks.insert(looks, plan);
+                    Known { plan, ring: None }
+                }
+                (Some(looks), None) => Known {
+                    plan: plan_of_looks[&looks],
+                    ring: None,
+                },
+            }
+        });
         Ok(Shared {
-            known: subjects.into_iter().zip(rings).collect(),
+            known: known.collect(),
+            places,
             plans,
             first,
         })
     }
+
+    /// What is known of a subject that has a plan.
+    pub fn get(&self, topology: &Topology, subject: impl Subject) -> Option<&Known> {
+        let &place = self.places.get(subject.number(topology))?;
+        (place != NONE).then(|| &self.known[place as usize])
+    }
 }
+
+/// Instead of a place: there is none.
+const NONE: u32 = u32::MAX;

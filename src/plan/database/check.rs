@@ -65,11 +65,11 @@ fn is_plan(key: &Key, plan: &Plan) -> bool {
     levels.contains(&plan.max_level)
         && plan.ring_size == key.configuration.vertex_count() as usize
         && stencils.len() <= usize::from(u16::MAX)
-        && stencils.is_sorted_by_key(|stencil| stencil.level)
-        && stencils.iter().all(|stencil| {
-            stencil.level <= plan.max_level
-                && stencil.corner.is_none_or(|corner| corner < 4)
-                && is_row(&stencil.weights)
+        && (0..stencils.len()).is_sorted_by_key(|number| stencils.level(number))
+        && (0..stencils.len()).all(|number| {
+            stencils.level(number) <= plan.max_level
+                && stencils.corner(number).is_none_or(|corner| corner < 4)
+                && is_row(&stencils.weights(number))
         })
         && plan
             .nearby

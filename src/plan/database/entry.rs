@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::plan::builder::{Plan, PlanOptions};
 use crate::plan::configuration::Configuration;
 use crate::plan::edge::{EdgeKind, EdgePlan};
+use crate::plan::level::Steps;
 use crate::plan::vertex::{Side, VertexKind, VertexPlan};
 
 /// What a plan is for.
@@ -45,21 +46,16 @@ impl Kind {
         self,
         configuration: &Configuration,
         options: PlanOptions,
+        steps: &Steps,
     ) -> Result<Entry> {
+        let edge = |kind| EdgePlan::build_by(configuration, kind, options, steps);
+        let vertex = |kind| VertexPlan::build_by(configuration, kind, options, steps);
         Ok(match self {
-            Kind::Inside => Entry::Inside(Plan::build(configuration, options)?),
-            Kind::Edge => Entry::Edge(EdgePlan::build(configuration, EdgeKind::Whole, options)?),
-            Kind::Spoke => Entry::Edge(EdgePlan::build(configuration, EdgeKind::Spoke, options)?),
-            Kind::Vertex => Entry::Vertex(VertexPlan::build(
-                configuration,
-                VertexKind::Control,
-                options,
-            )?),
-            Kind::Centre => Entry::Vertex(VertexPlan::build(
-                configuration,
-                VertexKind::Centre,
-                options,
-            )?),
+            Kind::Inside => Entry::Inside(Plan::build_by(configuration, options, steps)?),
+            Kind::Edge => Entry::Edge(edge(EdgeKind::Whole)?),
+            Kind::Spoke => Entry::Edge(edge(EdgeKind::Spoke)?),
+            Kind::Vertex => Entry::Vertex(vertex(VertexKind::Control)?),
+            Kind::Centre => Entry::Vertex(vertex(VertexKind::Centre)?),
         })
     }
 }

@@ -18,6 +18,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::error::{Error, Result};
 use crate::plan::builder::PlanOptions;
 use crate::plan::configuration::Configuration;
+use crate::plan::level::Steps;
 
 pub use entry::{Entry, Key, Kind};
 pub use file::GREATEST_BYTES;
@@ -154,12 +155,12 @@ impl Database {
         let made: Result<Vec<(Entry, Option<bool>)>> = keys
             .par_iter()
             .zip(&stored)
-            .map(|(key, stored)| {
+            .map_init(Steps::rounded, |steps, (key, stored)| {
                 let read = stored.as_ref().map(|stored| words::entry(stored, key));
                 let sound = read.as_ref().map(Option::is_some);
                 let entry = match read.flatten() {
                     Some(entry) => entry,
-                    None => key.kind.build(&key.configuration, key.options)?,
+                    None => key.kind.build(&key.configuration, key.options, steps)?,
                 };
                 Ok((entry, sound))
             })

@@ -5,11 +5,12 @@
 use smallvec::SmallVec;
 
 use crate::abi;
-use crate::plan::builder::{Plan, PlanOptions, Stencil};
+use crate::plan::builder::{Plan, PlanOptions};
 use crate::plan::configuration::Configuration;
 use crate::plan::database::check;
 use crate::plan::database::entry::{Entry, Key, Kind};
 use crate::plan::edge::EdgePlan;
+use crate::plan::stencils::Stencils;
 use crate::plan::strip::{Crease, Stretch, Strip};
 use crate::plan::tree::Node;
 use crate::plan::vertex::{Side, VertexPlan};
@@ -57,9 +58,10 @@ pub fn of_entry(entry: &Entry) -> Vec<u32> {
         .iter()
         .for_each(|node| put_node(&mut words, node));
     words.push(plan.stencils.len() as u32);
-    for stencil in &plan.stencils {
-        words.push(stencil.level | stencil.corner.map_or(0, |corner| corner + 1) << 8);
-        put_weights(&mut words, &stencil.weights);
+    for number in 0..plan.stencils.len() {
+        let corner = plan.stencils.corner(number);
+        words.push(plan.stencils.level(number) | corner.map_or(0, |corner| corner + 1) << 8);
+        put_weights(&mut words, &plan.stencils.weights(number));
     }
     for tangents in &plan.nearby {
         words.push(u32::from(tangents.is_some()));
@@ -295,16 +297,18 @@ impl Words<'_> {
         let ring = ring_size as usize;
         let nodes = self.count()?;
         let nodes: Option<Vec<Node>> = (0..nodes).map(|_| self.node()).collect();
-        let stencils = self.count()?;
-        let mut stencil = || {
+        let count = self.count()?;
+        let mut stencils = Stencils::new(ring, false);
+        for _ in 0..count {
             let word = self.next()?;
-            Some(Stencil {
-                level: word & 255,
-                corner: (word >> 8).checked_sub(1),
-                weights: self.weights(ring)?,
-            })
-        };
-        let stencils: Option<Vec<Stencil>> = (0..stencils).map(|_| stencil()).collect();
+            let corner = (word >> 8).checked_sub(1).filter(|&corner| corner < 255);
+            if word >> 8 > 0 && corner.is_none() {
+                return None;
+            }
+            let weights = self.take(ring)?.iter();
+            let weights = weights.map(|&word| f32::from_bits(word).into());
+            stencils.push(word & 255, corner, weights);
+        }
         let mut nearby: [Option<[Vec<f64>; 2]>; 4] = Default::default();
         for tangents in &mut nearby {
             if self.flag()? {
@@ -319,7 +323,7 @@ impl Words<'_> {
             ring_size: ring,
             max_level,
             nodes: nodes?,
-            stencils: stencils?,
+            stencils,
             nearby,
             strips,
         })

@@ -49,6 +49,10 @@ pub enum Format {
     Obj,
     /// Triangles as bytes.
     Ply,
+    /// A drawing.
+    Svg,
+    /// Facts.
+    Json,
 }
 
 /// A tessellated surface.
@@ -76,7 +80,14 @@ pub struct Point {
 }
 
 impl Format {
-    const ALL: [Format; 4] = [Format::Png, Format::Csv, Format::Obj, Format::Ply];
+    const ALL: [Format; 6] = [
+        Format::Png,
+        Format::Csv,
+        Format::Obj,
+        Format::Ply,
+        Format::Svg,
+        Format::Json,
+    ];
 
     /// The format that `path`'s extension means, if it is one of `allowed`.
     pub fn of(path: &Path, allowed: &[Format]) -> Result<Format> {
@@ -100,6 +111,8 @@ impl Format {
             Format::Csv => "csv",
             Format::Obj => "obj",
             Format::Ply => "ply",
+            Format::Svg => "svg",
+            Format::Json => "json",
         }
     }
 }

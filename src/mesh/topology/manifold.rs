@@ -1,0 +1,146 @@
+//! What is not manifold, and how sharp that makes it.
+
+use smallvec::SmallVec;
+
+use crate::mesh::topology::{FaceCorner, Topology};
+use crate::mesh::{BoundaryInterpolation, INFINITE_SHARPNESS};
+
+impl Topology {
+    /// Sharp corners and non-manifold places, after OpenSubdiv's `prepareComponentTagsAndSharpness`.
+    pub(super) fn sharpen_non_manifold(&mut self) {
+        let manifold = self.manifold_edges();
+        let mut at_others = vec![false; self.vertex_count()];
+        for (edge, _) in self.edges.iter_mut().zip(&manifold).filter(|pair| !pair.1) {
+            edge.sharpness = INFINITE_SHARPNESS;
+            for vertex in edge.vertices {
+                at_others[vertex as usize] = true;
+            }
+        }
+        for vertex in 0..self.vertex_count() as u32 {
+            let is_manifold = !at_others[vertex as usize];
+            if self.is_interpolated_corner(vertex)
+                || !(is_manifold && self.is_plain_fan(vertex))
+                    && self.is_non_manifold_corner(vertex, &manifold)
+            {
+                self.vertex_sharpness[vertex as usize] = INFINITE_SHARPNESS;
+            }
+        }
+    }
+
+    /// Whether each edge has at most two faces, and two walk it in opposite directions.
+    fn manifold_edges(&self) -> Vec<bool> {
+        // How often each is walked forwards, and in the upper half how often backwards.
+        let mut walks = vec![0u8; self.edges.len()];
+        for (&from, &edge) in self.faces.vertices().iter().zip(&self.face_edges) {
+            let backwards = self.edges[edge as usize].vertices[0] != from;
+            let walks = &mut walks[edge as usize];
+            let seen = *walks >> (4 * u8::from(backwards)) & 15;
+            *walks += if seen < 2 {
+                1 << (4 * u8::from(backwards))
+            } else {
+                0
+            };
+        }
+        let is_manifold = |walks: u8| walks & 15 < 2 && walks >> 4 < 2;
+        walks.into_iter().map(is_manifold).collect()
+    }
+
+    /// Whether the faces around `vertex`, all of whose edges are manifold, hang together, as far as few faces tell at once.
+    fn is_plain_fan(&self, vertex: u32) -> bool {
+        let corners = self.vertex_faces.get(vertex);
+        let mut sides: SmallVec<[[u32; 2]; 8]> = SmallVec::new();
+        if corners.len() > sides.inline_size() {
+            return false;
+        }
+        for &FaceCorner { face, corner } in corners {
+            let edges = self.face_edges(face);
+            let before = if corner == 0 {
+                edges.len()
+            } else {
+                corner as usize
+            } - 1;
+            sides.push([edges[corner as usize], edges[before]]);
+        }
+        // From the face that no other leads to, or anywhere.
+        let Some(&[_, first]) = sides
+            .iter()
+            .find(|[_, before]| !sides.iter().any(|[next, _]| next == before))
+            .or(sides.first())
+        else {
+            return true;
+        };
+        let mut at = first;
+        for met in 0..sides.len() {
+            let Some(&[next, _]) = sides.iter().find(|[_, before]| *before == at) else {
+                return false;
+            };
+            at = next;
+            if at == first {
+                return met + 1 == sides.len();
+            }
+        }
+        true
+    }
+
+    fn is_interpolated_corner(&self, vertex: u32) -> bool {
+        self.options.boundary == BoundaryInterpolation::EdgeAndCorner
+            && self.vertex_faces.get(vertex).len() == 1
+            && self.vertex_edges.get(vertex).len() == 2
+    }
+
+    /// A non-manifold vertex is a corner, unless it merely lies on a crease inside the mesh: two edges of more than two faces, between which
+    /// each fan of faces around the vertex spans. (OpenSubdiv 3.5 only counted faces and edges; pull request 1338 mended it.)
+    fn is_non_manifold_corner(&self, vertex: u32, manifold: &[bool]) -> bool {
+        let (edges, faces) = (self.vertex_edges.get(vertex), self.vertex_faces.get(vertex));
+        let is_boundary = |&edge: &u32| self.edge_faces.get(edge).len() < 2;
+        let non_manifold = edges.iter().copied().filter(|&e| !manifold[e as usize]);
+        match non_manifold.collect::<SmallVec<[u32; 4]>>()[..] {
+            [] => !faces.is_empty() && !self.is_single_fan(vertex, manifold),
+            [from, to] if faces.len() > edges.len() && !edges.iter().any(is_boundary) => {
+                !self.fans_span(vertex, [from, to], manifold)
+            }
+            _ => true,
+        }
+    }
+
+    /// Whether the faces around `vertex` hang together across its edges, all of which are manifold.
+    fn is_single_fan(&self, vertex: u32, manifold: &[bool]) -> bool {
+        let corners = self.vertex_faces.get(vertex);
+        let face = corners[0].face;
+        let [a, b] = self.edges_at(face, vertex);
+        let (mut met, end) = self.sweep(vertex, face, a, manifold);
+        if end != a {
+            met += self.sweep(vertex, face, b, manifold).0 - 1;
+        }
+        met == corners.len()
+    }
+
+    /// Whether all fans of faces around `vertex` lead from one of two edges to the other, the only ones there that are no plain inner edges.
+    fn fans_span(&self, vertex: u32, [from, to]: [u32; 2], manifold: &[bool]) -> bool {
+        let mut met = 0;
+        for &face in self.edge_faces.get(from) {
+            let (faces, end) = self.sweep(vertex, face, from, manifold);
+            if end != to {
+                return false;
+            }
+            met += faces;
+        }
+        met == self.vertex_faces.get(vertex).len()
+    }
+
+    /// The number of faces around `vertex` that follow each other from `face` on, away from its edge `from`, and the edge at which they end: `from` itself
+    /// where they close.
+    fn sweep(&self, vertex: u32, face: u32, from: u32, manifold: &[bool]) -> (usize, u32) {
+        let [a, b] = self.edges_at(face, vertex);
+        let mut at = (face, if a == from { b } else { a });
+        let mut met = 1;
+        while at.1 != from && manifold[at.1 as usize] {
+            let Some(next) = self.step(vertex, at.0, at.1) else {
+                break;
+            };
+            at = next;
+            met += 1;
+        }
+        (met, at.1)
+    }
+}

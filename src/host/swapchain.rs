@@ -60,16 +60,9 @@ impl Swapchain {
         size: [u32; 2],
         pacing: Pacing,
     ) -> Result<Swapchain> {
-        let physical = device.info().physical;
-        // SAFETY: the device is one of the surface's instance.
-        let formats = unsafe {
-            let functions = &surface.functions;
-            functions.get_physical_device_surface_formats(physical, surface.raw)
-        };
-        let formats = formats.map_err(failed("vkGetPhysicalDeviceSurfaceFormatsKHR"))?;
         let mut swapchain = Swapchain {
             functions: khr::swapchain::Device::new(device.instance().raw(), device.raw()),
-            format: choose(&formats)?,
+            format: format(device, &surface)?,
             pacing,
             mode: vk::PresentModeKHR::FIFO,
             extent: vk::Extent2D::default(),
@@ -155,7 +148,7 @@ impl Swapchain {
     /// and must not be destroyed later than this: framebuffers go first.
     ///
     /// # Errors
-    /// Vulkan's own; `ERROR_SURFACE_LOST_KHR` among them, after which surface and swapchain are to be made again.
+    /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
         let physical = self.device.info().physical;
@@ -196,12 +189,51 @@ impl Swapchain {
         Ok(())
     }
 
+    /// Makes the images anew after the surface was lost, in one that `surface` makes of the same window once the old one has gone. Everything as after
+    /// [`resize`](Self::resize).
+    ///
+    /// # Errors
+    /// Those of `surface`; [`Error::NoDisplay`] when the device cannot show pictures of the [format](Self::format) in it any more; Vulkan's own,
+    /// [`Error::SurfaceLost`] once more among them.
+    pub fn renew(
+        &mut self,
+        size: [u32; 2],
+        surface: impl FnOnce() -> Result<WindowSurface>,
+    ) -> Result<()> {
+        self.wait()?;
+        self.destroy_views();
+        let device = self.device.raw();
+        {
+            let queue = self.device.queue();
+            // SAFETY: the queue is ours for now; once it is idle nothing uses what is destroyed, all of which is ours. Null handles are allowed.
+            unsafe {
+                let _ = device.queue_wait_idle(*queue);
+                for semaphore in self.drawn.drain(..) {
+                    device.destroy_semaphore(semaphore, None);
+                }
+                self.functions.destroy_swapchain(self.raw, None);
+            }
+        }
+        self.raw = vk::SwapchainKHR::null();
+        self.stale = true;
+        // A frame that was given up may have left it signalled.
+        self.renew_semaphore();
+        self.surface.destroy();
+        self.surface = surface()?;
+        let missing = self.surface.missing(self.device.info())?;
+        if !missing.is_empty() || format(&self.device, &self.surface)? != self.format {
+            let words = "the display has changed, and the device does not draw to it as before";
+            return Err(Error::NoDisplay(words.into()));
+        }
+        self.resize(size)
+    }
+
     /// Records a frame and sends it to the display, if the one before it is done and the display has an image to spare. Nothing waits.
     ///
     /// `record` gets this, a command buffer outside of any render pass, and the image. If it fails nothing is shown, and the error comes back.
     ///
     /// # Errors
-    /// Vulkan's own; those of `record`.
+    /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own; those of `record`.
     pub fn frame(
         &mut self,
         record: impl FnOnce(&Swapchain, vk::CommandBuffer, Image) -> Result<()>,
@@ -299,11 +331,14 @@ impl Swapchain {
             device
                 .reset_fences(&[self.fence])
                 .map_err(failed("vkResetFences"))?;
+            let span = tracing::debug_span!("submit").entered();
             if let Err(code) = device.queue_submit(*queue, &[submit], self.fence) {
                 drop(queue);
                 self.renew_fence();
                 return Err(failed("vkQueueSubmit")(code));
             }
+            drop(span);
+            let _span = tracing::debug_span!("present").entered();
             self.functions.queue_present(*queue, &present)
         };
         match presented {
@@ -475,6 +510,17 @@ impl Drop for Swapchain {
             self.functions.destroy_swapchain(self.raw, None);
         }
     }
+}
+
+/// The format of a surface's images.
+fn format(device: &Device, surface: &WindowSurface) -> Result<vk::SurfaceFormatKHR> {
+    let physical = device.info().physical;
+    // SAFETY: the device is one of the surface's instance.
+    let formats = unsafe {
+        let functions = &surface.functions;
+        functions.get_physical_device_surface_formats(physical, surface.raw)
+    };
+    choose(&formats.map_err(failed("vkGetPhysicalDeviceSurfaceFormatsKHR"))?)
 }
 
 impl Swapchain {

@@ -148,6 +148,7 @@ fn irregular(
     let topology = model.topology();
     let mut pass = pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options);
     pass.cached = Some("quadtree_cached");
+    pass.cell = Some(twin::cell);
     let kinds = rings
         .iter()
         .map(|(_, ring)| (Kind::Inside, &ring.configuration));
@@ -335,6 +336,7 @@ fn add<'a>(
     pass.patches.last_mut().expect("it was just pushed")
 }
 
+/// By their numbers.
 const NODE_KINDS: [NodeKind; 6] = [
     NodeKind::Internal,
     NodeKind::Regular,

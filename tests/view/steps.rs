@@ -300,7 +300,7 @@ fn changes(session: &Session) {
 }
 
 /// Clicks from the middle outwards until an edge is picked.
-fn pick_an_edge(session: &Session) {
+pub fn pick_an_edge(session: &Session) {
     let [x, y, width, height] = session.area().map(f64::from);
     for step in 0..40 {
         session

@@ -2,14 +2,18 @@
 
 mod drawing;
 mod saves;
+mod shaders;
 mod start;
 mod state;
 
+pub use saves::Changes;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use hullform::host::Shown;
+use hullform::host::{Shown, WindowSurface};
 use hullform::mesh::{ControlMesh, Model};
 use hullform::{Error, Result};
 
@@ -19,6 +23,7 @@ use super::context::{Context, Drawn, Key};
 use super::errors::{Measured, Subject};
 use super::panels::{self, Status};
 use super::part::Wanted;
+use super::piece::Piece;
 use super::probe::{Found, Ray};
 use super::readings::Readings;
 use super::stage::{Side, Stage, Staged};
@@ -26,6 +31,9 @@ use super::viewer::{Viewer, Wish};
 use super::watch::{self, Watch};
 use super::workers::{Wake, Workers};
 use crate::options::Shape;
+
+/// How long what is still worked on is waited for in the end.
+const PATIENCE: Duration = Duration::from_secs(3);
 
 /// What workers bring.
 pub enum Done {
@@ -39,8 +47,12 @@ pub enum Done {
     Measured(Box<Subject>, Result<Arc<Measured>>),
     /// Its errors are known.
     Compared(Result<()>),
+    /// Shaders were compiled.
+    Compiled(Result<shaders::Compiled>),
     /// Something was saved, in words.
     Saved(Result<String>),
+    /// Models were saved: their numbers and revisions, and in words.
+    Written(Vec<(u64, u64)>, Result<String>),
 }
 
 /// What is being worked on.
@@ -84,9 +96,21 @@ pub struct Program {
     pub copied: Option<String>,
     probe: Option<[f64; 2]>,
     found: Option<Found>,
+    live: shaders::Live,
     /// What the scene's picture shows.
     drawn: Option<drawing::Drawing>,
     fresh: bool,
+}
+
+/// What a program is to know besides.
+#[derive(Clone)]
+pub struct Setting {
+    /// How models are read.
+    pub shape: Shape,
+    /// Where the shaders' text is.
+    pub glsl: Option<PathBuf>,
+    /// What wakes the window.
+    pub wake: Wake,
 }
 
 /// What became of a frame.
@@ -104,11 +128,15 @@ impl Program {
         viewer: Viewer,
         canvas: Canvas,
         context: Context,
-        shape: Shape,
-        wake: Wake,
+        setting: Setting,
     ) -> Result<Program> {
+        let Setting { shape, glsl, wake } = setting;
         let egui = egui::Context::default();
         panels::dress(&egui);
+        let mut watch = Watch::new(wake.clone());
+        if let Some(folder) = &glsl {
+            watch.look_into(folder);
+        }
         Ok(Program {
             stage: Stage::new(&context)?,
             context: Arc::new(context),
@@ -122,11 +150,16 @@ impl Program {
             found: None,
             drawn: None,
             fresh: true,
+            live: shaders::Live {
+                due: glsl.is_some(),
+                folder: glsl.clone(),
+                ..Default::default()
+            },
             egui,
             viewer,
             canvas,
             shape,
-            watch: Watch::new(wake.clone()),
+            watch,
             workers: Workers::new(wake),
         })
     }
@@ -147,7 +180,19 @@ impl Program {
         let changed = self.watch.changed();
         for part in &mut self.viewer.parts {
             let place = part.file().and_then(watch::place);
-            part.unread |= place.is_some_and(|place| changed.contains(&place));
+            if place.is_none_or(|place| !changed.contains(&place)) {
+                continue;
+            }
+            match part.is_changed() {
+                false => part.unread = true,
+                true => self.viewer.notices.tell(format!(
+                    "{} has changed on the disk; F5 reads it, without what was changed here",
+                    part.name()
+                )),
+            }
+        }
+        if let Some(folder) = &self.live.folder {
+            self.live.due |= changed.iter().any(|place| place.starts_with(folder));
         }
         let files = self.viewer.parts.iter().filter_map(|part| part.file());
         self.watch.look_after(files);
@@ -177,10 +222,12 @@ impl Program {
                     }
                 }
             }
+            Done::Compiled(result) => return self.take_compiled(result),
             Done::Compared(result) => {
                 self.running.compared = None;
                 result.or_else(|error| self.fails(error))?;
             }
+            Done::Written(written, result) => return self.take_written(&written, result),
             Done::Saved(result) => {
                 self.running.saved -= 1;
                 match result {
@@ -194,7 +241,7 @@ impl Program {
 
     /// What went wrong is told; a device that was lost ends the work with it.
     fn fails(&mut self, error: Error) -> Result<()> {
-        if matches!(error, Error::DeviceLost { .. }) {
+        if error.is_of_device() {
             return Err(error);
         }
         let error = crate::refused::in_words_of_options(error);
@@ -257,7 +304,7 @@ impl Program {
                 self.fresh = true;
                 Ok(())
             }
-            Err(error @ Error::DeviceLost { .. }) => Err(error),
+            Err(error) if error.is_of_device() => Err(error),
             Err(error) => {
                 let error = crate::refused::in_words_of_options(error);
                 let error = error.in_file(&part.name()).to_string();
@@ -277,8 +324,16 @@ impl Program {
             let eye = self.viewer.orbit.eye();
             let ray = Ray::new(&eye, at, side.viewport.aspect());
             let parts = self.stage.parts.iter();
-            let all = parts.filter_map(|staged| self.measured(staged, side.recipe)?.find(ray));
-            all.min_by(|a, b| a.distance.total_cmp(&b.distance))
+            let all = parts.filter_map(|staged| {
+                let found = self.measured(staged, side.recipe)?.find(ray)?;
+                Some((staged, found))
+            });
+            let (staged, mut found) = all.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
+            found.piece = staged.sides.get(side.recipe).and_then(|drawn| {
+                let uv = found.uv.map(|x| x as f32);
+                Piece::new(drawn.surface.prepared(), drawn.list.as_ref()?, found.face, uv)
+            });
+            Some(found)
         });
     }
 
@@ -293,6 +348,9 @@ impl Program {
         }
         if !self.running.piped.is_empty() {
             words.push("building pipelines".to_string());
+        }
+        if self.live.running {
+            words.push("compiling shaders".to_string());
         }
         if self.running.saved > 0 {
             words.push("saving".to_string());
@@ -316,11 +374,14 @@ impl Program {
             && running.compared.is_none()
             && running.measured.is_none()
             && running.saved == 0
+            && !self.live.running
+            && !(self.live.due && !self.stage.parts.is_empty())
     }
 
     /// Runs the panels on what came in. What a button of the mouse does stands between what came before it and what after: else a drag that begins
     /// and ends within one slow frame would be none.
     pub fn panels(&mut self, mut input: egui::RawInput) -> egui::FullOutput {
+        let _span = tracing::debug_span!("panels").entered();
         let runs = runs(std::mem::take(&mut input.events));
         let mut output = egui::FullOutput::default();
         for events in runs {
@@ -339,12 +400,13 @@ impl Program {
         let egui = self.egui.clone();
         let busy = self.busy();
         let (viewer, found) = (&mut self.viewer, self.found.as_ref());
-        let readings = &self.readings;
+        let (readings, shaders) = (&self.readings, self.live.error.as_deref());
         egui.run(input, |ctx| {
             let status = Status {
                 readings,
                 busy: busy.clone(),
                 probe: found,
+                shaders,
                 scale: legend.clone(),
             };
             panels::show(ctx, viewer, &status);
@@ -400,11 +462,35 @@ impl Program {
         self.canvas.resize(size)
     }
 
+    /// Shows pictures in another surface of the window, since the old one was lost.
+    pub fn renew(
+        &mut self,
+        size: [u32; 2],
+        surface: impl FnOnce() -> Result<WindowSurface>,
+    ) -> Result<()> {
+        self.fresh = true;
+        self.canvas.renew(size, surface)
+    }
+
+    /// Ends a program whose device was lost: what it showed.
+    pub fn give_up(mut self) -> Viewer {
+        if !self.workers.finish(PATIENCE) {
+            std::mem::forget(self.context.clone());
+        }
+        let _ = self.canvas.wait();
+        let mut viewer = std::mem::take(&mut self.viewer);
+        viewer.wishes.clear();
+        // What was being read is read again.
+        let unread = viewer.parts.iter_mut().filter(|part| part.history().is_none());
+        unread.for_each(|part| part.unread = part.error.is_none());
+        viewer
+    }
+
     /// Ends the work and gives everything back.
     pub fn close(mut self) -> Result<()> {
         let _ = self.canvas.wait();
         self.context.save_cache();
-        if !self.workers.finish(Duration::from_secs(3)) {
+        if !self.workers.finish(PATIENCE) {
             // What still works uses the device: it goes with the process.
             std::mem::forget(self.context.clone());
         }
@@ -427,6 +513,7 @@ impl Program {
                 Wish::Render => self.render()?,
                 Wish::CopyCommand => self.copy(),
                 Wish::Save => self.save()?,
+                Wish::SaveAll => self.save_all()?,
             }
         }
         Ok(false)

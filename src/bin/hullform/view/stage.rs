@@ -196,6 +196,7 @@ impl Stage {
         context: &Context,
     ) -> Result<Cost> {
         let started = Instant::now();
+        let _span = tracing::debug_span!("record").entered();
         let mut cost = Cost::default();
         let device = context.device().raw();
         let sides = Stage::sides(viewer);
@@ -240,7 +241,7 @@ impl Stage {
 }
 
 /// How surfaces are drawn.
-fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
+pub fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
     Style {
         cull: viewer.cutting.cull.mode(),
         ..Style::new(drawn.surface.options(), viewer.cutting.spacing, fill)

@@ -122,7 +122,11 @@ impl Program {
             "probe": self.found.as_ref().map(|found| json!({
                 "face": found.face, "uv": found.uv, "position": found.position.to_array(),
                 "normal": found.normal.to_array(), "error": found.error, "angle": found.angle,
+                "facts": found.facts().into_iter().map(|(name, words)| (name.to_string(), json!(words)))
+                    .collect::<serde_json::Map<String, Value>>(),
             })),
+            "asked": viewer.intent.is_some(),
+            "shaders": { "version": self.context.shaders().version, "error": self.live.error },
             "vertices": self.readings.cost.vertices,
             "memory": memory,
         })

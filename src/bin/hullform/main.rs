@@ -114,9 +114,12 @@ fn exit_code(result: Result<()>) -> ExitCode {
 fn log_to_stderr() {
     use tracing_subscriber::filter::{EnvFilter, LevelFilter};
     use tracing_subscriber::prelude::*;
-    let filter = EnvFilter::builder()
-        .with_default_directive(LevelFilter::WARN.into())
-        .from_env_lossy();
+    let filter = EnvFilter::builder().with_default_directive(LevelFilter::WARN.into());
+    let filter = match std::env::var_os("RUST_LOG") {
+        Some(_) => filter.from_env_lossy(),
+        // It warns of desktops that lack what we do not use.
+        None => filter.parse_lossy("warn,winit=error"),
+    };
     let lines = tracing_subscriber::fmt::layer()
         .with_writer(|| Plain(std::io::stderr()))
         .with_target(false)

@@ -304,7 +304,8 @@ pub fn function(name: &str) -> Option<*const c_void> {
 
 /// Functions that return nothing, make nothing, destroy nothing and draw nothing. Commands are such, those apart that a layer must see.
 pub fn cannot_fail(name: &str) -> bool {
-    const OTHERS: [&str; 18] = [
+    const OTHERS: [&str; 19] = [
+        "vkFreeCommandBuffers",
         "vkGetDeviceQueue",
         "vkGetBufferMemoryRequirements",
         "vkGetImageMemoryRequirements",

@@ -187,6 +187,7 @@ pub const KEYS: &[Binding] = &[
     ),
     plain(Key::Comma, Command::Neighbour(false), "the file before"),
     plain(Key::F5, Command::Reload, "read the files again"),
+    // Taken before egui sees it.
     plain(Key::Tab, Command::Panels, "panels"),
     plain(Key::F1, Command::Sheet, "these keys (also ?)"),
     held(Modifiers::COMMAND, Key::Q, Command::Quit, "quit"),

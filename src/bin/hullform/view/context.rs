@@ -6,7 +6,7 @@ use std::time::Instant;
 use hullform::ash::vk;
 use hullform::gpu::shaders::{Embedded, Modules};
 use hullform::gpu::{
-    Backend, CachePipelines, DrawList, Layout, Pipelines, Residence, Slots, SurfaceOptions,
+    Backend, CachePipelines, DrawList, Fill, Layout, Pipelines, Residence, Slots, SurfaceOptions,
     TessellatedSurface,
 };
 use hullform::host::{Device, OffscreenTarget, Owned, Style};
@@ -203,6 +203,18 @@ impl Context {
     /// Pipelines that have been made.
     pub fn ready(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
         find(&self.kept().pipelines, key)
+    }
+
+    /// The same, or others that draw the same patches in another look until these are there.
+    pub fn ready_or_like(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
+        let kept = self.kept();
+        let lines = |fill| fill == Fill::Lines;
+        let like = |(shaders, style): &Key| {
+            let of = |style: &Style| (style.backend, style.residence, style.spacing, lines(style.fill));
+            *shaders == key.0 && of(style) == of(&key.1)
+        };
+        let found = kept.pipelines.iter().rev().find(|(other, _)| like(other));
+        find(&kept.pipelines, key).or_else(|| found.map(|(_, pipelines)| pipelines.clone()))
     }
 
     /// Makes pipelines, unless they are there. Takes its time: for workers.

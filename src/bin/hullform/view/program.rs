@@ -19,6 +19,7 @@ use hullform::{Error, Result};
 
 use super::canvas::{Canvas, Panels};
 use super::clipboard::Clipboard;
+use super::command::of_event;
 use super::context::{Context, Drawn, Key};
 use super::errors::{Measured, Subject};
 use super::panels::{self, Status};
@@ -97,6 +98,8 @@ pub struct Program {
     probe: Option<[f64; 2]>,
     found: Option<Found>,
     live: shaders::Live,
+    /// Whether there is no picture of the scene yet.
+    anew: bool,
     /// What the scene's picture shows.
     drawn: Option<drawing::Drawing>,
     fresh: bool,
@@ -150,6 +153,7 @@ impl Program {
             found: None,
             drawn: None,
             fresh: true,
+            anew: true,
             live: shaders::Live {
                 due: glsl.is_some(),
                 folder: glsl.clone(),
@@ -382,6 +386,7 @@ impl Program {
     /// and ends within one slow frame would be none.
     pub fn panels(&mut self, mut input: egui::RawInput) -> egui::FullOutput {
         let _span = tracing::debug_span!("panels").entered();
+        self.take_tabs(&mut input.events);
         let runs = runs(std::mem::take(&mut input.events));
         let mut output = egui::FullOutput::default();
         for events in runs {
@@ -392,6 +397,18 @@ impl Program {
             output.append(self.panels_once(one));
         }
         output
+    }
+
+    /// Takes Tab for our own where nothing is written: egui would give the keys to one of its widgets, and all others would be dead.
+    fn take_tabs(&mut self, events: &mut Vec<egui::Event>) {
+        if self.egui.wants_keyboard_input() || self.viewer.intent.is_some() {
+            return;
+        }
+        let is_tab = |event: &egui::Event| matches!(event, egui::Event::Key { key: egui::Key::Tab, .. });
+        let tabs: Vec<egui::Event> = events.extract_if(.., |event| is_tab(event)).collect();
+        for command in tabs.iter().filter_map(of_event) {
+            self.viewer.obey(command);
+        }
     }
 
     fn panels_once(&mut self, input: egui::RawInput) -> egui::FullOutput {
@@ -422,7 +439,10 @@ impl Program {
         let drawing = self.drawing();
         let area = self.viewer.area;
         let changed = self.fresh || self.drawn.as_ref() != Some(&drawing);
-        let mut scene = changed && !area.is_empty();
+        let running = |key: &Key| self.running.piped.contains(key);
+        // The last picture stays meanwhile, if it still is one of this window.
+        let waits = !self.anew && self.stage.waits(&self.viewer, &self.context, running);
+        let mut scene = changed && !area.is_empty() && !waits;
         if scene {
             let overlay = self.overlay(f64::from(panels.scale), drawing.legend());
             if let Err(error) = self.stage.decide(&self.viewer, &overlay, &self.context) {
@@ -449,9 +469,13 @@ impl Program {
                 self.readings.cost = cost;
             }
         }
-        if shown == Shown::Yes || shown == Shown::Hidden || !scene {
+        if waits {
+            // It is drawn when they are there.
+            self.drawn = None;
+        } else if shown == Shown::Yes || shown == Shown::Hidden || !scene {
             self.drawn = Some(drawing);
             self.fresh &= !scene && changed;
+            self.anew &= !scene;
         }
         Ok(Outcome { shown, scene })
     }
@@ -459,6 +483,7 @@ impl Program {
     /// Goes along with a window of this size.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.fresh = true;
+        self.anew = true;
         self.canvas.resize(size)
     }
 
@@ -469,6 +494,7 @@ impl Program {
         surface: impl FnOnce() -> Result<WindowSurface>,
     ) -> Result<()> {
         self.fresh = true;
+        self.anew = true;
         self.canvas.renew(size, surface)
     }
 

@@ -164,6 +164,16 @@ impl Stage {
         missing.into_iter().map(|(_, place)| place).collect()
     }
 
+    /// Whether something cannot be drawn, not even in another look, before pipelines that are being made are there.
+    pub fn waits(&self, viewer: &Viewer, context: &Context, made: impl Fn(&Key) -> bool) -> bool {
+        let mut all = self.parts.iter().flat_map(|part| &part.sides);
+        all.any(|drawn| {
+            let keys = Stage::fills(viewer).into_iter();
+            let mut keys = keys.map(|fill| drawn.key(style(drawn, viewer, fill)));
+            keys.any(|key| made(&key) && context.ready_or_like(&key).is_none())
+        })
+    }
+
     /// Brings what has changed to where the next frame finds it: places, levels, lines. Nothing is drawn at this time.
     ///
     /// # Errors
@@ -406,7 +416,7 @@ impl Drawn {
         cost.vertices += self.vertices;
         for (round, fill) in (0..).zip(Stage::fills(viewer)) {
             let key = self.key(style(self, viewer, fill));
-            let Some(pipelines) = context.ready(&key) else {
+            let Some(pipelines) = context.ready_or_like(&key) else {
                 continue;
             };
             // SAFETY: this function's contract.

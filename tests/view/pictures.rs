@@ -14,12 +14,12 @@ use crate::window::{Picture, Session, keys, read_png};
 const FINER: f64 = 0.9;
 const FINER_LINES: f64 = 4.5;
 
-/// What has lines whose width goes by pixels.
-const LINED: [&str; 3] = ["node kinds", "levels", "tree depth"];
+/// What has lines whose width goes by pixels, or squares with sharp sides.
+const LINED: [&str; 4] = ["node kinds", "levels", "tree depth", "checker"];
 
 /// What is pressed from one picture to the next, so that in the end each choice has met many others; one for each kind of faces. Without wires, which `render` draws half as wide.
 const WALKS: [(&str, &str); 3] = [
-    ("builtin:ngons", "c mb c o brc lc zc ac"),
+    ("builtin:ngons", "c mb c o bc brc lc zc ac"),
     ("builtin:cube", "mmmc bc rc lc mb c kc mb oc mb c mzc"),
     ("builtin:hull", "MM mmc bc bc oc rc c"),
 ];

@@ -393,6 +393,9 @@ impl Open {
         if let Some(left) = self.program.viewer.notices.until_change() {
             soon = Some(soon.map_or(left, |delay| delay.min(left)));
         }
+        if let Some(left) = self.program.until_full() {
+            soon = Some(soon.map_or(left, |delay| delay.min(left)));
+        }
         self.due = soon.map(|delay| Instant::now() + delay.max(GLANCE));
         Ok(false)
     }

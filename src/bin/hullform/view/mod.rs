@@ -10,6 +10,7 @@ mod draft;
 mod errors;
 mod folder;
 mod glsl;
+mod haste;
 mod log;
 mod notices;
 mod orbit;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
+use hullform::gpu::Cut;
 use hullform::host::{Shown, WindowSurface};
 use hullform::mesh::{ControlMesh, Model};
 use hullform::{Error, Result};
@@ -22,6 +23,7 @@ use super::clipboard::Clipboard;
 use super::command::of_event;
 use super::context::{Context, Drawn, Key};
 use super::errors::{Measured, Subject};
+use super::haste::Haste;
 use super::panels::{self, Status};
 use super::part::Wanted;
 use super::piece::Piece;
@@ -98,6 +100,8 @@ pub struct Program {
     probe: Option<[f64; 2]>,
     found: Option<Found>,
     live: shaders::Live,
+    began: Instant,
+    haste: Haste,
     /// Whether there is no picture of the scene yet.
     anew: bool,
     /// What the scene's picture shows.
@@ -153,6 +157,8 @@ impl Program {
             found: None,
             drawn: None,
             fresh: true,
+            began: Instant::now(),
+            haste: Haste::default(),
             anew: true,
             live: shaders::Live {
                 due: glsl.is_some(),
@@ -341,6 +347,12 @@ impl Program {
         });
     }
 
+    /// How long until another picture may be due, where there is one that is coarser or of earlier edits.
+    pub fn until_full(&self) -> Option<Duration> {
+        let both = [self.haste.left(), self.haste.breather()];
+        both.into_iter().flatten().min()
+    }
+
     /// What is being worked on, in words.
     pub fn busy(&self) -> Vec<String> {
         let mut words = Vec::new();
@@ -378,6 +390,7 @@ impl Program {
             && running.compared.is_none()
             && running.measured.is_none()
             && running.saved == 0
+            && self.haste.left().is_none()
             && !self.live.running
             && !(self.live.due && !self.stage.parts.is_empty())
     }
@@ -435,17 +448,30 @@ impl Program {
         let started = Instant::now();
         if let Some(seconds) = self.stage.device_seconds() {
             self.readings.device.add(seconds);
+            self.haste.took(seconds);
         }
         let drawing = self.drawing();
         let area = self.viewer.area;
-        let changed = self.fresh || self.drawn.as_ref() != Some(&drawing);
+        let rested = self.haste.left().is_some_and(|left| left.is_zero());
+        let moved = self.fresh || self.drawn.as_ref() != Some(&drawing);
+        let changed = moved || rested;
         let running = |key: &Key| self.running.piped.contains(key);
         // The last picture stays meanwhile, if it still is one of this window.
         let waits = !self.anew && self.stage.waits(&self.viewer, &self.context, running);
-        let mut scene = changed && !area.is_empty() && !waits;
+        // Of edits the panels tell at once.
+        let last = self.drawn.as_ref().filter(|_| !self.fresh);
+        let held = last.is_some_and(|last| drawing.is_edit_of(last))
+            && self.haste.breather().is_some();
+        let mut scene = changed && !area.is_empty() && !waits && !held;
+        let full = self.viewer.cutting.cut();
+        let cut = match moved && !self.anew {
+            true => Cut { level: self.haste.level(full.level), ..full },
+            false => full,
+        };
         if scene {
             let overlay = self.overlay(f64::from(panels.scale), drawing.legend());
-            if let Err(error) = self.stage.decide(&self.viewer, &overlay, &self.context) {
+            let stage = &mut self.stage;
+            if let Err(error) = stage.decide(&self.viewer, cut, &overlay, &self.context) {
                 self.fails(error)?;
                 scene = false;
             }
@@ -466,10 +492,13 @@ impl Program {
             self.readings.host.add(started.elapsed().as_secs_f64());
             if let Some(cost) = cost {
                 self.readings.frames[1] += 1;
+                self.haste.drawn(cut.level < full.level);
                 self.readings.cost = cost;
             }
         }
-        if waits {
+        if held {
+            // It is drawn after a moment.
+        } else if waits {
             // It is drawn when they are there.
             self.drawn = None;
         } else if shown == Shown::Yes || shown == Shown::Hidden || !scene {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{DrawList, Fill, Pipelines, Residence, View, ring};
+use hullform::gpu::{Cut, DrawList, Fill, Pipelines, Residence, View, ring};
 use hullform::host::{
     ColouredTriangles, ColouredVertex, OffscreenTarget, Owned, Style, TimestampQuery,
 };
@@ -41,7 +41,7 @@ pub struct Staged {
 /// What lists depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Decision {
-    cut: hullform::gpu::Cut,
+    cut: Cut,
     tags: Option<(super::orbit::Orbit, f32, u64, [u32; 2])>,
 }
 
@@ -178,14 +178,20 @@ impl Stage {
     ///
     /// # Errors
     /// What the library refuses, of a part whose number comes along.
-    pub fn decide(&mut self, viewer: &Viewer, overlay: &Overlay, context: &Context) -> Result<()> {
+    pub fn decide(
+        &mut self,
+        viewer: &Viewer,
+        cut: Cut,
+        overlay: &Overlay,
+        context: &Context,
+    ) -> Result<()> {
         for staged in &mut self.parts {
             let number = staged.number;
             let Some(part) = viewer.parts.iter().find(|part| part.number() == number) else {
                 continue;
             };
             staged.place(part)?;
-            staged.decide(viewer, part, context)?;
+            staged.decide(viewer, cut, part, context)?;
         }
         let maps = self.maps.iter_mut().zip(&overlay.maps);
         // SAFETY: nothing is drawn at this time, which the caller has asked the canvas.
@@ -321,8 +327,13 @@ impl Staged {
     }
 
     /// Decides levels anew, where what they depend on has changed.
-    fn decide(&mut self, viewer: &Viewer, part: &Part, context: &Context) -> Result<()> {
-        let cut = viewer.cutting.cut();
+    fn decide(
+        &mut self,
+        viewer: &Viewer,
+        cut: Cut,
+        part: &Part,
+        context: &Context,
+    ) -> Result<()> {
         let size = [viewer.area.width, viewer.area.height];
         let tags = |pixels| (viewer.cutting_orbit(), pixels, part.moves(), size);
         let decision = Decision {
@@ -333,7 +344,7 @@ impl Staged {
         if decided && self.sides.iter().all(|drawn| drawn.list.is_some()) {
             return Ok(());
         }
-        let tags = self.tags(viewer, part)?;
+        let tags = self.tags(viewer, cut.level, part)?;
         let device = context.device();
         for drawn in &mut self.sides {
             let list = drawn.surface.draw_list(cut, tags.as_ref())?;
@@ -348,7 +359,7 @@ impl Staged {
     }
 
     /// A depth for each control vertex, by the camera that cuts.
-    fn tags(&self, viewer: &Viewer, part: &Part) -> Result<Option<DepthTags>> {
+    fn tags(&self, viewer: &Viewer, level: f32, part: &Part) -> Result<Option<DepthTags>> {
         let Some(adaptive) = viewer.cutting.adaptive() else {
             return Ok(None);
         };
@@ -370,7 +381,6 @@ impl Staged {
             false => self.model.positions(),
         };
         let outline = &drawn.surface.prepared().outline;
-        let level = viewer.cutting.cut().level;
         adaptive.tags(outline, &places, level, seen).map(Some)
     }
 }

@@ -6,8 +6,8 @@ use ash::vk;
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::shaders::{Embedded, Modules};
+use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::Spacing;

@@ -28,7 +28,8 @@ impl PointPipeline {
         cache: vk::PipelineCache,
     ) -> Result<PointPipeline> {
         // SAFETY: this function's contract.
-        let pipeline = unsafe { compute_pipeline(device, layout, cache, "points.comp", &Embedded)? };
+        let pipeline =
+            unsafe { compute_pipeline(device, layout, cache, "points.comp", &Embedded)? };
         Ok(PointPipeline { pipeline })
     }
 

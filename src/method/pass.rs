@@ -103,7 +103,9 @@ impl Pass {
     /// The cell by which patch `patch` is evaluated at `uv` of its own domain, if that lies inside. None where patches have no plans, and where there is
     /// no such patch or place.
     pub fn cell(&self, patch: usize, uv: Vec2) -> Option<Cell> {
-        let cell = self.cell.filter(|_| patch < self.patches.len() && !uv.is_nan())?;
+        let cell = self
+            .cell
+            .filter(|_| patch < self.patches.len() && !uv.is_nan())?;
         cell(self, patch, self.domain.nearest(uv.to_array()).into())
     }
 

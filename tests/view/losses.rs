@@ -51,7 +51,9 @@ impl Place {
 /// Makes the top edge infinitely sharp, or another.
 fn change(session: &Session) {
     session.press('d');
-    session.until("edges are picked", |state| state["selection"]["tool"] == "edges");
+    session.until("edges are picked", |state| {
+        state["selection"]["tool"] == "edges"
+    });
     pick_an_edge(session);
     session.press('i');
     session.until("changed", |state| state["models"][0]["steps"][0] == 1);
@@ -70,7 +72,11 @@ fn stir(session: &Session, what: &str, is_so: impl Fn(&serde_json::Value) -> boo
 }
 
 fn told(words: &'static str) -> impl Fn(&serde_json::Value) -> bool {
-    move |state| state["notice"].as_str().is_some_and(|notice| notice.contains(words))
+    move |state| {
+        state["notice"]
+            .as_str()
+            .is_some_and(|notice| notice.contains(words))
+    }
 }
 
 #[test]
@@ -103,7 +109,11 @@ fn a_lost_device_is_opened_anew_with_all_that_was_changed() {
     let state = session.until("drawn again", |state| {
         state["vertices"].as_u64() > Some(0) && state["models"][0]["methods"].is_array()
     });
-    assert_eq!(state["models"][0]["steps"], serde_json::json!([1, 0]), "{state:#}");
+    assert_eq!(
+        state["models"][0]["steps"],
+        serde_json::json!([1, 0]),
+        "{state:#}"
+    );
     assert_eq!(state["models"][0]["changed"], true);
     assert!(session.scene().colours() > 100, "it is drawn");
     session.control('z');
@@ -132,8 +142,14 @@ fn a_device_that_stays_lost_is_the_end_with_what_was_changed_saved() {
     let file = session.file("box-edited-1.obj");
     let (code, words) = session.end();
     assert_eq!(code, Some(1), "{words}");
-    assert!(words.contains("box-edited-1.obj") && words.contains("DEVICE_LOST"), "{words}");
+    assert!(
+        words.contains("box-edited-1.obj") && words.contains("DEVICE_LOST"),
+        "{words}"
+    );
     assert!(!words.contains("panicked"), "{words}");
     let text = std::fs::read_to_string(file).expect("it is text");
-    assert!(text.contains(" 10\n"), "an edge is infinitely sharp: {text}");
+    assert!(
+        text.contains(" 10\n"),
+        "an edge is infinitely sharp: {text}"
+    );
 }

@@ -54,7 +54,10 @@ fn every_method_back_end_colour_and_camera_is_as_render_draws_it() {
     println!("{pictures} pictures");
     let counts = seen.each_ref().map(BTreeSet::len);
     let [methods, ..] = counts;
-    assert!(methods == METHODS.len() && counts[1..] == [3, 9, 2, 2], "{seen:?}");
+    assert!(
+        methods == METHODS.len() && counts[1..] == [3, 9, 2, 2],
+        "{seen:?}"
+    );
 }
 
 /// Presses a key, and waits until it has done what it does.
@@ -114,6 +117,10 @@ fn draw(session: &Session, line: &str) -> Picture {
         .env("XDG_CACHE_HOME", session.folder.join("home/cache"))
         .output();
     let done = done.expect("a shell");
-    assert!(done.status.success(), "{line}: {}", String::from_utf8_lossy(&done.stderr));
+    assert!(
+        done.status.success(),
+        "{line}: {}",
+        String::from_utf8_lossy(&done.stderr)
+    );
     read_png(&session.folder.join(Path::new("hullform.png")))
 }

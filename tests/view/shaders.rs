@@ -32,10 +32,16 @@ fn shaders_are_compiled_anew_and_what_is_wrong_leaves_the_last_good_picture() {
     let line = unit.lines().count() + 2;
     let state = session.until("refused", |state| state["shaders"]["error"].is_string());
     let words = state["shaders"]["error"].as_str().expect("it is");
-    assert!(words.starts_with(&format!("glsl/lib/unit.glsl:{line}: ")), "{words}");
+    assert!(
+        words.starts_with(&format!("glsl/lib/unit.glsl:{line}: ")),
+        "{words}"
+    );
     let [.., width, height] = session.area();
     let upper = [0, 0, width, height / 2];
-    assert!(session.scene().part(upper) == first.part(upper), "the last good picture stays");
+    assert!(
+        session.scene().part(upper) == first.part(upper),
+        "the last good picture stays"
+    );
 
     write(&shaders, "lib/unit.glsl", unit);
     session.until("mended", |state| state["shaders"]["error"].is_null());
@@ -47,7 +53,9 @@ fn shaders_are_compiled_anew_and_what_is_wrong_leaves_the_last_good_picture() {
     let end = fragment.rfind('}').expect("it has a function");
     let dark = format!("{}    out_colour.rgb *= 0.25;\n}}\n", &fragment[..end]);
     write(&shaders, "surface.frag", &dark);
-    session.until("darker", |state| state["shaders"]["version"].as_u64() > before);
+    session.until("darker", |state| {
+        state["shaders"]["version"].as_u64() > before
+    });
     let apart = session.scene().difference(&first, false);
     assert!(apart > 5.0, "the picture follows: {apart}");
 
@@ -55,8 +63,14 @@ fn shaders_are_compiled_anew_and_what_is_wrong_leaves_the_last_good_picture() {
     let before = version();
     write(&shaders, "surface.frag", fragment);
     let filling = source("surface.comp").expect("it is one of ours");
-    write(&shaders, "surface.comp", &format!("{filling}\n// other text, the same meaning\n"));
-    session.until("as it was", |state| state["shaders"]["version"].as_u64() > before);
+    write(
+        &shaders,
+        "surface.comp",
+        &format!("{filling}\n// other text, the same meaning\n"),
+    );
+    session.until("as it was", |state| {
+        state["shaders"]["version"].as_u64() > before
+    });
     session.sooner_or_later("words have gone", |state| state["notice"].is_null());
     assert!(session.scene() == first, "the picture is as it was");
     assert_eq!(session.state()["validation"], 0);

@@ -15,6 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub mod keys {
     pub const CONTROL: u32 = 0xffe3;
     pub const SHIFT: u32 = 0xffe1;
+    pub const F5: u32 = 0xffc2;
     pub const F12: u32 = 0xffc9;
     pub const ESCAPE: u32 = 0xff1b;
     pub const TAB: u32 = 0xff09;

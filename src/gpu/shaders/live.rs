@@ -25,7 +25,11 @@ impl Glsl {
     pub fn read(folder: &Path) -> Result<Glsl> {
         let wrong = |problem: String| {
             let place = Place::File(folder.display().to_string());
-            Error::input(place, problem, "name a folder that has all of hullform's shaders")
+            Error::input(
+                place,
+                problem,
+                "name a folder that has all of hullform's shaders",
+            )
         };
         let sources = Sources::read(folder).map_err(wrong)?;
         let modules = sources.modules().map_err(wrong)?;
@@ -44,8 +48,11 @@ impl Glsl {
 
     fn compile(&self, module: &Module) -> Result<Arc<[u32]>> {
         let made = shaderc::Compiler::new().map_err(|error| error.to_string());
-        let made =
-            made.and_then(|compiler| Ok(glsl::compile(&compiler, &self.sources, module)?.as_binary().into()));
+        let made = made.and_then(|compiler| {
+            Ok(glsl::compile(&compiler, &self.sources, module)?
+                .as_binary()
+                .into())
+        });
         made.map_err(|words| refused(&module.name, &words))
     }
 }
@@ -136,7 +143,10 @@ mod tests {
         let name = "flat.equal.tese";
         assert_ne!(glsl.fingerprint(name), Embedded.fingerprint(name));
         let words = glsl.module(name).expect_err("it is nonsense").to_string();
-        assert!(words.starts_with(&format!("glsl/lib/unit.glsl:{line}: ")), "{words}");
+        assert!(
+            words.starts_with(&format!("glsl/lib/unit.glsl:{line}: ")),
+            "{words}"
+        );
         std::fs::write(&path, text).expect("it is written");
         let glsl = Glsl::read(folder.path()).expect("it is there");
         assert_eq!(glsl.module(name).ok(), Embedded.module(name).ok());

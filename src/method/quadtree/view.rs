@@ -68,7 +68,9 @@ impl<'a> Border<'a> {
 pub(super) fn roots(pass: &Pass) -> BTreeSet<u32> {
     let records: &[abi::Border] = bytemuck::cast_slice(&pass.tables[BORDERS]);
     let uses: &[abi::Use] = bytemuck::cast_slice(&pass.tables[USES]);
-    let roots = records.iter().map(|record| uses[record.uses[0] as usize].root);
+    let roots = records
+        .iter()
+        .map(|record| uses[record.uses[0] as usize].root);
     roots.collect()
 }
 

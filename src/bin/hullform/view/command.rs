@@ -109,12 +109,7 @@ pub struct Binding {
     pub words: &'static str,
 }
 
-const fn held(
-    modifiers: Modifiers,
-    key: Key,
-    command: Command,
-    words: &'static str,
-) -> Binding {
+const fn held(modifiers: Modifiers, key: Key, command: Command, words: &'static str) -> Binding {
     Binding {
         modifiers,
         key,
@@ -161,7 +156,12 @@ pub const KEYS: &[Binding] = &[
     plain(Key::K, Command::Cull, "culling"),
     plain(Key::Z, Command::Freeze, "freeze the camera that cuts"),
     plain(Key::S, Command::Split, "split with another method"),
-    held(Modifiers::SHIFT, Key::S, Command::SideBySide, "side by side"),
+    held(
+        Modifiers::SHIFT,
+        Key::S,
+        Command::SideBySide,
+        "side by side",
+    ),
     plain(Key::E, Command::ErrorMap, "map of errors"),
     plain(Key::X, Command::Amplify, "amplify cracks"),
     plain(Key::Q, Command::Pick(Tool::Look), "pick nothing"),
@@ -175,11 +175,26 @@ pub const KEYS: &[Binding] = &[
     plain(Key::Escape, Command::Unpick, "pick nothing"),
     held(Modifiers::COMMAND, Key::Z, Command::Undo, "undo"),
     held(Modifiers::COMMAND, Key::Y, Command::Redo, "redo"),
-    held(Modifiers::COMMAND, Key::S, Command::Save, "save as OBJ with tags"),
+    held(
+        Modifiers::COMMAND,
+        Key::S,
+        Command::Save,
+        "save as OBJ with tags",
+    ),
     plain(Key::Space, Command::Play, "play or pause"),
     plain(Key::F12, Command::Screenshot, "save what is seen"),
-    held(Modifiers::SHIFT, Key::F12, Command::Render, "save what render makes of it"),
-    held(Modifiers::COMMAND, Key::C, Command::CopyLine, "copy the command line"),
+    held(
+        Modifiers::SHIFT,
+        Key::F12,
+        Command::Render,
+        "save what render makes of it",
+    ),
+    held(
+        Modifiers::COMMAND,
+        Key::C,
+        Command::CopyLine,
+        "copy the command line",
+    ),
     plain(
         Key::Period,
         Command::Neighbour(true),

@@ -210,7 +210,14 @@ impl Context {
         let kept = self.kept();
         let lines = |fill| fill == Fill::Lines;
         let like = |(shaders, style): &Key| {
-            let of = |style: &Style| (style.backend, style.residence, style.spacing, lines(style.fill));
+            let of = |style: &Style| {
+                (
+                    style.backend,
+                    style.residence,
+                    style.spacing,
+                    lines(style.fill),
+                )
+            };
             *shaders == key.0 && of(style) == of(&key.1)
         };
         let found = kept.pipelines.iter().rev().find(|(other, _)| like(other));
@@ -273,8 +280,7 @@ impl Context {
         let (device, cache) = (self.device(), self.gpu.pipeline_cache());
         let (raw, layout) = (device.raw(), &self.layout);
         // SAFETY: all of one live device; the modules are ours, or what somebody makes of them to look at.
-        let made =
-            unsafe { Pipelines::with_modules(raw, layout, cache, prepared, &options, from) };
+        let made = unsafe { Pipelines::with_modules(raw, layout, cache, prepared, &options, from) };
         // SAFETY: they were just made by this device.
         Ok(Arc::new(unsafe { Owned::new(device, made?) }))
     }

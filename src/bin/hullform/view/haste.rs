@@ -34,7 +34,10 @@ impl Haste {
     pub fn level(&self, level: f32) -> f32 {
         match self.full.filter(|&full| full > SLOW) {
             // Vertices go by the square.
-            Some(full) => (level * (QUICK / full).sqrt() as f32).floor().max(1.0).min(level),
+            Some(full) => (level * (QUICK / full).sqrt() as f32)
+                .floor()
+                .max(1.0)
+                .min(level),
             None => level,
         }
     }

@@ -26,6 +26,7 @@ mod selection;
 mod settings;
 mod shot;
 mod stage;
+mod surroundings;
 mod viewer;
 mod viewport;
 mod watch;

@@ -28,7 +28,8 @@ impl Piece {
             let of_face = patches.filter(|(_, patch)| patch.ptex == face);
             of_face.map(move |(number, patch)| (pass, number, from_ptex(patch, uv)))
         });
-        let (pass, number, at) = all.find(|&(pass, _, at)| has(prepared.passes[pass].domain, at))?;
+        let (pass, number, at) =
+            all.find(|&(pass, _, at)| has(prepared.passes[pass].domain, at))?;
         let own = &prepared.passes[pass];
         Some(Piece {
             cell: own.cell(number, Vec2::from(at)),
@@ -98,9 +99,13 @@ mod tests {
         let (mut cells, mut plain) = (0, 0);
         for name in ["ngons", "hull", "pole-5"] {
             let model = Model::new(builtin(name).expect(name));
-            let able = METHODS.iter().filter(|method| method.check_model(&model).is_ok());
+            let able = METHODS
+                .iter()
+                .filter(|method| method.check_model(&model).is_ok());
             for method in able {
-                let prepared = method.prepare(&model, MethodOptions::default()).expect(name);
+                let prepared = method
+                    .prepare(&model, MethodOptions::default())
+                    .expect(name);
                 let options = SurfaceOptions::default();
                 let list = DrawList::new(&prepared, &options, None, cut, None).expect(name);
                 let patches = prepared.passes.iter().flat_map(|pass| &pass.patches);

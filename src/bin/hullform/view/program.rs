@@ -1,10 +1,12 @@
 //! The program behind the window: it starts what is needed of what the viewer wants, takes what is ready, and draws what has changed.
 
+mod cursor;
 mod drawing;
 mod saves;
 mod shaders;
 mod start;
 mod state;
+mod takes;
 
 pub use saves::Changes;
 
@@ -12,11 +14,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::DVec2;
+use hullform::Result;
 use hullform::gpu::Cut;
 use hullform::host::{Shown, WindowSurface};
 use hullform::mesh::{ControlMesh, Model};
-use hullform::{Error, Result};
 
 use super::canvas::{Canvas, Panels};
 use super::clipboard::Clipboard;
@@ -26,12 +27,11 @@ use super::errors::{Measured, Subject};
 use super::haste::Haste;
 use super::panels::{self, Status};
 use super::part::Wanted;
-use super::piece::Piece;
-use super::probe::{Found, Ray};
+use super::probe::Found;
 use super::readings::Readings;
-use super::stage::{Side, Stage, Staged};
+use super::stage::Stage;
 use super::viewer::{Viewer, Wish};
-use super::watch::{self, Watch};
+use super::watch::Watch;
 use super::workers::{Wake, Workers};
 use crate::options::Shape;
 
@@ -102,6 +102,8 @@ pub struct Program {
     live: shaders::Live,
     began: Instant,
     haste: Haste,
+    /// Whether the scene has changed and is not drawn yet.
+    undrawn: bool,
     /// Whether there is no picture of the scene yet.
     anew: bool,
     /// What the scene's picture shows.
@@ -159,6 +161,7 @@ impl Program {
             fresh: true,
             began: Instant::now(),
             haste: Haste::default(),
+            undrawn: false,
             anew: true,
             live: shaders::Live {
                 due: glsl.is_some(),
@@ -172,179 +175,6 @@ impl Program {
             watch,
             workers: Workers::new(wake),
         })
-    }
-
-    /// Takes what workers have brought, when nothing is drawn; whether there was anything.
-    pub fn take(&mut self) -> Result<bool> {
-        self.take_changes();
-        let done = self.workers.done();
-        let any = !done.is_empty();
-        for done in done {
-            self.take_one(done)?;
-        }
-        Ok(any)
-    }
-
-    /// Has models read again whose files have changed.
-    fn take_changes(&mut self) {
-        let changed = self.watch.changed();
-        for part in &mut self.viewer.parts {
-            let place = part.file().and_then(watch::place);
-            if place.is_none_or(|place| !changed.contains(&place)) {
-                continue;
-            }
-            match part.is_changed() {
-                false => part.unread = true,
-                true => self.viewer.notices.tell(format!(
-                    "{} has changed on the disk; F5 reads it, without what was changed here",
-                    part.name()
-                )),
-            }
-        }
-        if let Some(folder) = &self.live.folder {
-            self.live.due |= changed.iter().any(|place| place.starts_with(folder));
-        }
-        let files = self.viewer.parts.iter().filter_map(|part| part.file());
-        self.watch.look_after(files);
-    }
-
-    fn take_one(&mut self, done: Done) -> Result<()> {
-        match done {
-            Done::Read(number, result) => self.take_mesh(number, result),
-            Done::Built(number, wanted, result) => return self.take_built(number, wanted, result),
-            Done::Piped(key, result) => {
-                self.running.piped.retain(|other| *other != key);
-                if let Err(error) = result {
-                    self.failed.piped.push(key);
-                    return self.fails(error);
-                }
-            }
-            Done::Measured(subject, result) => {
-                self.running.measured = None;
-                match result {
-                    Ok(measured) => {
-                        self.kept.insert(0, measured);
-                        self.kept.truncate(6);
-                    }
-                    Err(error) => {
-                        self.failed.measured.push(*subject);
-                        return self.fails(error);
-                    }
-                }
-            }
-            Done::Compiled(result) => return self.take_compiled(result),
-            Done::Compared(result) => {
-                self.running.compared = None;
-                result.or_else(|error| self.fails(error))?;
-            }
-            Done::Written(written, result) => return self.take_written(&written, result),
-            Done::Saved(result) => {
-                self.running.saved -= 1;
-                match result {
-                    Ok(words) => self.viewer.notices.tell(words),
-                    Err(error) => return self.fails(error),
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// What went wrong is told; a device that was lost ends the work with it.
-    fn fails(&mut self, error: Error) -> Result<()> {
-        if error.is_of_device() {
-            return Err(error);
-        }
-        let error = crate::refused::in_words_of_options(error);
-        self.viewer.notices.warn(error.to_string());
-        Ok(())
-    }
-
-    fn take_mesh(&mut self, number: u64, result: Result<ControlMesh>) {
-        self.running.read.retain(|other| *other != number);
-        let Some(part) = self
-            .viewer
-            .parts
-            .iter_mut()
-            .find(|part| part.number() == number)
-        else {
-            return;
-        };
-        match result {
-            Ok(mesh) => {
-                part.loaded(mesh);
-                if self.viewer.selection.part() == Some(number) {
-                    self.viewer.selection.clear();
-                }
-                let unread = self
-                    .viewer
-                    .parts
-                    .iter()
-                    .any(|part| part.history().is_none());
-                if self.viewer.fit_pending && !unread {
-                    self.viewer.fit();
-                }
-            }
-            Err(error) => part.error = Some(error.to_string()),
-        }
-    }
-
-    fn take_built(
-        &mut self,
-        number: u64,
-        wanted: Wanted,
-        result: Result<(Arc<Model>, Vec<Drawn>)>,
-    ) -> Result<()> {
-        self.running.built.retain(|(other, _)| *other != number);
-        let parts = &mut self.viewer.parts;
-        let Some(part) = parts.iter_mut().find(|part| part.number() == number) else {
-            return Ok(());
-        };
-        match result {
-            Ok((model, sides)) => {
-                part.error = None;
-                part.model = Some(model.clone());
-                for refusal in sides.iter().flat_map(|drawn| &drawn.refusals) {
-                    self.viewer.notices.warn(refusal.clone());
-                }
-                self.stage.parts.retain(|staged| staged.number != number);
-                self.stage
-                    .parts
-                    .push(Staged::new(number, model, wanted, sides));
-                self.stage.parts.sort_by_key(|staged| staged.number);
-                self.fresh = true;
-                Ok(())
-            }
-            Err(error) if error.is_of_device() => Err(error),
-            Err(error) => {
-                let error = crate::refused::in_words_of_options(error);
-                let error = error.in_file(&part.name()).to_string();
-                part.error = Some(error.clone());
-                self.failed.built.push((number, wanted));
-                self.viewer.notices.warn(error);
-                Ok(())
-            }
-        }
-    }
-
-    /// What is under the cursor.
-    fn look_under_cursor(&mut self) {
-        self.found = self.probe.and_then(|at| {
-            let sides = Stage::sides(&self.viewer);
-            let (side, at) = under(&self.viewer, &sides, at)?;
-            let eye = self.viewer.orbit.eye();
-            let ray = Ray::new(&eye, at, side.viewport.aspect());
-            let parts = self.stage.parts.iter();
-            let all = parts.filter_map(|staged| {
-                let found = self.measured(staged, side.recipe)?.find(ray)?;
-                Some((staged, found))
-            });
-            let (staged, mut found) = all.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
-            found.piece = staged.sides.get(side.recipe).and_then(|drawn| {
-                let uv = found.uv.map(|x| x as f32);
-                Piece::new(drawn.surface.prepared(), drawn.list.as_ref()?, found.face, uv)
-            });
-            Some(found)
-        });
     }
 
     /// How long until another picture may be due, where there is one that is coarser or of earlier edits.
@@ -391,6 +221,7 @@ impl Program {
             && running.measured.is_none()
             && running.saved == 0
             && self.haste.left().is_none()
+            && !self.undrawn
             && !self.live.running
             && !(self.live.due && !self.stage.parts.is_empty())
     }
@@ -417,7 +248,15 @@ impl Program {
         if self.egui.wants_keyboard_input() || self.viewer.intent.is_some() {
             return;
         }
-        let is_tab = |event: &egui::Event| matches!(event, egui::Event::Key { key: egui::Key::Tab, .. });
+        let is_tab = |event: &egui::Event| {
+            matches!(
+                event,
+                egui::Event::Key {
+                    key: egui::Key::Tab,
+                    ..
+                }
+            )
+        };
         let tabs: Vec<egui::Event> = events.extract_if(.., |event| is_tab(event)).collect();
         for command in tabs.iter().filter_map(of_event) {
             self.viewer.obey(command);
@@ -452,7 +291,10 @@ impl Program {
         }
         let drawing = self.drawing();
         let area = self.viewer.area;
-        let rested = self.haste.left().is_some_and(|left| left.is_zero());
+        // A picture that is saved is the full one.
+        let shooting = self.canvas.is_shooting();
+        let left = self.haste.left();
+        let rested = left.is_some_and(|left| left.is_zero() || shooting);
         let moved = self.fresh || self.drawn.as_ref() != Some(&drawing);
         let changed = moved || rested;
         let running = |key: &Key| self.running.piped.contains(key);
@@ -461,11 +303,15 @@ impl Program {
         // Of edits the panels tell at once.
         let last = self.drawn.as_ref().filter(|_| !self.fresh);
         let held = last.is_some_and(|last| drawing.is_edit_of(last))
-            && self.haste.breather().is_some();
+            && self.haste.breather().is_some()
+            && !shooting;
         let mut scene = changed && !area.is_empty() && !waits && !held;
         let full = self.viewer.cutting.cut();
-        let cut = match moved && !self.anew {
-            true => Cut { level: self.haste.level(full.level), ..full },
+        let cut = match moved && !self.anew && !shooting {
+            true => Cut {
+                level: self.haste.level(full.level),
+                ..full
+            },
             false => full,
         };
         if scene {
@@ -496,6 +342,7 @@ impl Program {
                 self.readings.cost = cost;
             }
         }
+        self.undrawn = held || waits || scene && !matches!(shown, Shown::Yes | Shown::Hidden);
         if held {
             // It is drawn after a moment.
         } else if waits {
@@ -536,7 +383,10 @@ impl Program {
         let mut viewer = std::mem::take(&mut self.viewer);
         viewer.wishes.clear();
         // What was being read is read again.
-        let unread = viewer.parts.iter_mut().filter(|part| part.history().is_none());
+        let unread = viewer
+            .parts
+            .iter_mut()
+            .filter(|part| part.history().is_none());
         unread.for_each(|part| part.unread = part.error.is_none());
         viewer
     }
@@ -589,18 +439,4 @@ fn runs(events: Vec<egui::Event>) -> Vec<Vec<egui::Event>> {
         runs.last_mut().expect("there is one").push(event);
     }
     runs
-}
-
-/// The side at a place of the picture (-1..1, y up), and the place in that side's own view.
-fn under<'s>(viewer: &Viewer, sides: &'s [Side], at: [f64; 2]) -> Option<(&'s Side, DVec2)> {
-    let area = viewer.area;
-    let pixel = f64::from(area.x) + 0.5 * (at[0] + 1.0) * f64::from(area.width);
-    let inside = |side: &&Side| {
-        let left = f64::from(side.scissor.x);
-        (left..left + f64::from(side.scissor.width)).contains(&pixel)
-    };
-    let side = sides.iter().find(inside)?;
-    let port = side.viewport;
-    let x = 2.0 * (pixel - f64::from(port.x)) / f64::from(port.width.max(1)) - 1.0;
-    Some((side, DVec2::new(x, at[1])))
 }

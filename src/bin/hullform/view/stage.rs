@@ -327,13 +327,7 @@ impl Staged {
     }
 
     /// Decides levels anew, where what they depend on has changed.
-    fn decide(
-        &mut self,
-        viewer: &Viewer,
-        cut: Cut,
-        part: &Part,
-        context: &Context,
-    ) -> Result<()> {
+    fn decide(&mut self, viewer: &Viewer, cut: Cut, part: &Part, context: &Context) -> Result<()> {
         let size = [viewer.area.width, viewer.area.height];
         let tags = |pixels| (viewer.cutting_orbit(), pixels, part.moves(), size);
         let decision = Decision {

@@ -33,7 +33,8 @@ impl Watch {
             let places = event.paths.iter().filter_map(|path| place(path));
             let told = |place: &PathBuf| {
                 let within = |folder| place.starts_with(folder);
-                written && (files_of(&watched).contains(place) || files_of(&inside).iter().any(within))
+                written
+                    && (files_of(&watched).contains(place) || files_of(&inside).iter().any(within))
             };
             for place in places.filter(told) {
                 // Nobody listens any more once the window has gone.

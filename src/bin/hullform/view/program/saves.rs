@@ -77,7 +77,10 @@ impl Program {
             return Ok(());
         }
         self.running.saved += 1;
-        let told: Vec<(u64, u64)> = all.iter().map(|copy| (copy.number, copy.revision)).collect();
+        let told: Vec<(u64, u64)> = all
+            .iter()
+            .map(|copy| (copy.number, copy.revision))
+            .collect();
         let work = move || all.iter().map(Copy::write).collect::<Result<Vec<String>>>();
         let told = move |result: Result<Vec<String>>| {
             Done::Written(told, result.map(|words| words.join("\n")))

@@ -69,7 +69,8 @@ impl Program {
             let mut fills = false;
             for (prepared, style) in &wanted {
                 if style.residence == Residence::Cache {
-                    let own: Vec<String> = CachePipelines::modules(prepared).filter(other).collect();
+                    let own: Vec<String> =
+                        CachePipelines::modules(prepared).filter(other).collect();
                     for name in &own {
                         from.module(name)?;
                     }

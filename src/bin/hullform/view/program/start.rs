@@ -62,7 +62,8 @@ impl Program {
         let part = &self.viewer.parts[place];
         let number = part.number();
         let recipes = self.viewer.recipes();
-        let Some(wanted) = part.wanted(self.live.filling, self.viewer.cutting.scheme, recipes) else {
+        let Some(wanted) = part.wanted(self.live.filling, self.viewer.cutting.scheme, recipes)
+        else {
             return Ok(());
         };
         let same = |staged: &&Staged| staged.number == number && staged.wanted == wanted;

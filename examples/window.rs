@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use hullform::ash::vk;
 use hullform::glam::Vec3;
 use hullform::gpu::{Cut, DrawList, Fill, Pipelines, Shading, SurfaceOptions, View};
-use hullform::gpu::{Layout, PipelineOptions, Target, TessellatedSurface};
+use hullform::gpu::{Layout, TessellatedSurface};
 use hullform::host::{Area, Device, Instance, OffscreenTarget, Owned, Pacing, Style};
 use hullform::host::{Swapchain, WindowSurface};
 use hullform::mesh::{Model, builtin};
@@ -137,18 +137,7 @@ impl Open {
         let list = surface.draw_list(cut, None)?;
         let target = target(&swapchain)?;
         let style = Style::new(options, cut.spacing, Fill::Solid(Shading::Lit));
-        let how = PipelineOptions {
-            target: Target {
-                samples: target.samples(),
-                ..Target::render_pass(target.render_pass())
-            },
-            backend: style.backend,
-            residence: style.residence,
-            spacing: style.spacing,
-            fill: style.fill,
-            fragment: None,
-            layout: None,
-        };
+        let how = style.options(&target);
         let cache = vk::PipelineCache::null();
         // SAFETY: all of one live device; `Owned` destroys them.
         let pipelines = unsafe {

@@ -138,6 +138,14 @@ pub enum Error {
         /// The result code's name.
         result: String,
     },
+    /// The window system took back what a window shows pictures in. Surface and swapchain can be made again, see `host::Swapchain::renew`.
+    #[error("{call} failed: {result}; open the window again")]
+    SurfaceLost {
+        /// The call that told.
+        call: &'static str,
+        /// The result code's name.
+        result: String,
+    },
     /// Another failure of a Vulkan call.
     #[error("{call} failed: {result}; choose another device, or update its driver")]
     Vulkan {
@@ -195,12 +203,17 @@ impl Error {
         }
     }
 
+    /// Whether the device was lost, or the surface of a window: everything that was made of it is of no use any more.
+    pub fn is_of_device(&self) -> bool {
+        matches!(self, Error::DeviceLost { .. } | Error::SurfaceLost { .. })
+    }
+
     /// The exit code of the command line: 1 failed, 2 bad input or usage, 3 no suitable device, or no display.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input { .. } | Error::File { .. } | Error::Option { .. } => 2,
             Error::Misuse(_) => 2,
-            Error::NoDevice(_) | Error::NoDisplay(_) => 3,
+            Error::NoDevice(_) | Error::NoDisplay(_) | Error::SurfaceLost { .. } => 3,
             Error::OutOfMemory { .. }
             | Error::DeviceLost { .. }
             | Error::Vulkan { .. }

@@ -21,6 +21,18 @@ fn every_subcommand_has_help() {
 }
 
 #[test]
+#[cfg(not(feature = "view"))]
+fn a_build_without_the_window_says_so_and_how_to_have_it() {
+    let output = run(&["view"]);
+    let words = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{words}");
+    assert!(
+        words.contains("--features view") && words.contains("hullform render"),
+        "{words}"
+    );
+}
+
+#[test]
 fn usage_errors_exit_with_2() {
     let wrong: [&[&str]; 14] = [
         &[],

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec2};
 use hullform::abi;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
-use hullform::method::{METHODS, Method, method};
+use hullform::method::{Cell, METHODS, Method, method};
 use hullform::plan::database::{Entry, Kind};
 use hullform::plan::{
     Configuration, Database, EdgeKind, EdgePlan, Node, PackedPlans, Plan, PlanOptions, Ring,
@@ -324,6 +324,46 @@ fn every_tess_level_finds_its_points_among_those_it_counts() {
         let chosen: Vec<Plan> = plans.into_iter().step_by(stride).take(8).collect();
         hold_levels(&packed(&chosen), &all, 1);
     }
+}
+
+/// Towards an extraordinary vertex cells are ever deeper, and patches of one plan have the same.
+#[test]
+fn cells_tell_plans_and_nodes() {
+    let model = Model::new(builtin("pole-5").expect("a built-in shape"));
+    let mut plans = 0;
+    for method in able(&model) {
+        let prepared = method
+            .prepare(&model, PlanOptions::default())
+            .expect("sound options");
+        for pass in &prepared.passes {
+            let cells = (0..pass.patches.len()).map(|patch| {
+                let at = |distance: f32| pass.cell(patch, Vec2::splat(distance));
+                let kinds = [0.5, 0.26, 0.126, 0.01].map(|distance| at(distance));
+                assert_eq!(at(f32::NAN), None);
+                (pass.patches[patch].plan, kinds)
+            });
+            let cells: Vec<_> = cells.collect();
+            assert_eq!(pass.cell(cells.len(), Vec2::ZERO), None);
+            for (plan, cell) in &cells {
+                let same = cells.iter().filter(|(other, _)| other == plan);
+                assert!(same.clone().all(|(_, other)| other[0] == cell[0]));
+            }
+            let numbers: std::collections::BTreeSet<u32> = cells
+                .iter()
+                .filter_map(|(_, cell)| Some(cell[0]?.plan))
+                .collect();
+            assert!(numbers.iter().copied().eq(0..numbers.len() as u32));
+            plans += numbers.len();
+            let deeper = |cell: &[Option<Cell>; 4]| {
+                let depths = cell.iter().flatten().map(|cell| cell.depth);
+                let depths: Vec<u32> = depths.collect();
+                depths.is_sorted() && depths.last() > Some(&5)
+            };
+            let irregular = cells.iter().any(|(_, cell)| deeper(cell));
+            assert_eq!(irregular, !numbers.is_empty(), "{}", pass.shader);
+        }
+    }
+    assert!(plans > 0);
 }
 
 #[test]

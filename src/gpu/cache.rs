@@ -8,8 +8,9 @@ use crate::frame::DrawList;
 use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::points::compute_pipeline;
 use crate::gpu::sets::STAGES;
+use crate::gpu::shaders::{Embedded, Modules};
 use crate::gpu::{Layout, Pose, Tables};
-use crate::method::{Jobs, Prepared};
+use crate::method::{Jobs, Pass, Prepared};
 
 /// Workgroups of a dispatch that every device takes (Vulkan spec, "Required Limits", `maxComputeWorkGroupCount`).
 const MOST_GROUPS: u32 = 65_535;
@@ -36,6 +37,30 @@ impl CachePipelines {
         cache: vk::PipelineCache,
         prepared: &Prepared,
     ) -> Result<CachePipelines> {
+        // SAFETY: this function's contract; the tests validate every module of ours.
+        unsafe { CachePipelines::with_modules(device, layout, cache, prepared, &Embedded) }
+    }
+
+    /// The names of the modules that they are made of.
+    pub fn modules(prepared: &Prepared) -> impl Iterator<Item = String> + '_ {
+        let passes = prepared.passes.iter();
+        passes.filter(|pass| pass.cached.is_some()).map(module)
+    }
+
+    /// The same from other modules than those that the crate brings, of the same names ([`modules`](Self::modules)).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and those of the modules.
+    ///
+    /// # Safety
+    /// As [`new`](Self::new); the modules are valid SPIR-V for the device, with the interfaces that ours have.
+    pub unsafe fn with_modules(
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+        prepared: &Prepared,
+        from: &dyn Modules,
+    ) -> Result<CachePipelines> {
         let mut made = CachePipelines {
             shaders: prepared.passes.iter().map(|pass| pass.shader).collect(),
             pipelines: Vec::new(),
@@ -45,9 +70,8 @@ impl CachePipelines {
                 made.pipelines.push(vk::Pipeline::null());
                 continue;
             }
-            let name = format!("{}.comp", pass.shader);
             // SAFETY: this function's contract.
-            match unsafe { compute_pipeline(device, layout, cache, &name) } {
+            match unsafe { compute_pipeline(device, layout, cache, &module(pass), from) } {
                 Ok(pipeline) => made.pipelines.push(pipeline),
                 Err(error) => {
                     // SAFETY: nothing has used them.
@@ -69,6 +93,11 @@ impl CachePipelines {
             unsafe { device.destroy_pipeline(pipeline, None) };
         }
     }
+}
+
+/// The module that fills a pass's cache.
+fn module(pass: &Pass) -> String {
+    format!("{}.comp", pass.shader)
 }
 
 impl Pose {

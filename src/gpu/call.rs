@@ -13,6 +13,7 @@ pub(crate) fn failed(call: &'static str) -> impl Fn(vk::Result) -> Error {
                 Error::OutOfMemory { call, result }
             }
             vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { call, result },
+            vk::Result::ERROR_SURFACE_LOST_KHR => Error::SurfaceLost { call, result },
             _ => Error::Vulkan { call, result },
         }
     }

@@ -6,8 +6,9 @@ use ash::vk;
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
+use crate::gpu::shaders::{Embedded, Modules};
 use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
-use crate::gpu::{Layout, failed, shaders};
+use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::Spacing;
 
@@ -50,6 +51,25 @@ impl Pipelines {
         prepared: &Prepared,
         options: &PipelineOptions<'_>,
     ) -> Result<Pipelines> {
+        // SAFETY: this function's contract; the tests validate every module of ours.
+        unsafe { Pipelines::with_modules(device, layout, cache, prepared, options, &Embedded) }
+    }
+
+    /// The same from other modules than those that the crate brings, of the same names ([`modules`](Self::modules)).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and those of the modules.
+    ///
+    /// # Safety
+    /// As [`new`](Self::new); the modules are valid SPIR-V for the device, with the interfaces that ours have.
+    pub unsafe fn with_modules(
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+        prepared: &Prepared,
+        options: &PipelineOptions<'_>,
+        from: &dyn Modules,
+    ) -> Result<Pipelines> {
         options.check(&layout.enabled())?;
         let attachments = options.target.attachments;
         let mut pipelines = Pipelines {
@@ -70,7 +90,7 @@ impl Pipelines {
                 control_points: control_points(pass, options.residence),
                 layout: pipelines.layout_or(layout),
             };
-            let modules = modules(pass, options);
+            let modules = modules(pass, options, from);
             // SAFETY: this function's contract.
             let made = modules.and_then(|modules| unsafe { plan.build(device, cache, &modules) });
             match made {
@@ -100,6 +120,13 @@ impl Pipelines {
             layout,
             made_for: None,
         }
+    }
+
+    /// The names of the modules that pipelines are made of.
+    pub fn modules(prepared: &Prepared, options: &PipelineOptions<'_>) -> Vec<String> {
+        let passes = prepared.passes.iter();
+        let names = passes.flat_map(|pass| names(pass, options));
+        names.map(|(_, name)| name).collect()
     }
 
     /// The pipeline for a pass of a draw list.
@@ -218,21 +245,21 @@ fn names(pass: &Pass, options: &PipelineOptions<'_>) -> Vec<(vk::ShaderStageFlag
 }
 
 /// A stage and the words of its module.
-type Module = (vk::ShaderStageFlags, &'static [u32]);
+type Module<'m> = (vk::ShaderStageFlags, Cow<'m, [u32]>);
 
-/// The modules of ours that a pass's pipeline has.
-fn modules(pass: &Pass, options: &PipelineOptions<'_>) -> Result<Vec<Module>> {
-    let found = names(pass, options).into_iter().map(|(stage, name)| {
-        let words = shaders::spirv(&name);
-        let words =
-            words.ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))?;
-        Ok((stage, words))
-    });
+/// The modules that a pass's pipeline has.
+fn modules<'m>(
+    pass: &Pass,
+    options: &PipelineOptions<'_>,
+    from: &'m dyn Modules,
+) -> Result<Vec<Module<'m>>> {
+    let found = names(pass, options).into_iter();
+    let found = found.map(|(stage, name)| Ok((stage, from.module(&name)?)));
     found.collect()
 }
 
 /// A module whose descriptor sets have numbers from `first` on.
-fn moved(words: &'static [u32], first: u32) -> Cow<'static, [u32]> {
+fn moved(words: &[u32], first: u32) -> Cow<'_, [u32]> {
     if first == 0 {
         return Cow::Borrowed(words);
     }
@@ -266,16 +293,16 @@ impl PipelinePlan<'_> {
         &self,
         device: &ash::Device,
         cache: vk::PipelineCache,
-        modules: &[Module],
+        modules: &[Module<'_>],
     ) -> Result<vk::Pipeline> {
         let mut made = Vec::new();
         let mut problem = None;
-        for &(stage, words) in modules {
+        for (stage, words) in modules {
             let words = moved(words, self.layout.first_set);
             let info = vk::ShaderModuleCreateInfo::default().code(&words);
-            // SAFETY: the words are a valid module; the tests validate every one.
+            // SAFETY: the words are a valid module, as the caller promises.
             match unsafe { device.create_shader_module(&info, None) } {
-                Ok(module) => made.push((stage, module)),
+                Ok(module) => made.push((*stage, module)),
                 Err(code) => problem = Some(failed("vkCreateShaderModule")(code)),
             }
         }

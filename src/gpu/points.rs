@@ -3,9 +3,10 @@
 use ash::vk;
 
 use crate::abi;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::sets::STAGES;
-use crate::gpu::{Layout, Pose, Tables, failed, shaders};
+use crate::gpu::shaders::{Embedded, Modules};
+use crate::gpu::{Layout, Pose, Tables, failed};
 
 /// The pipeline that computes points, the same for all methods.
 #[derive(Debug)]
@@ -27,7 +28,8 @@ impl PointPipeline {
         cache: vk::PipelineCache,
     ) -> Result<PointPipeline> {
         // SAFETY: this function's contract.
-        let pipeline = unsafe { compute_pipeline(device, layout, cache, "points.comp")? };
+        let pipeline =
+            unsafe { compute_pipeline(device, layout, cache, "points.comp", &Embedded)? };
         Ok(PointPipeline { pipeline })
     }
 
@@ -92,17 +94,17 @@ impl Pose {
 /// Vulkan's own.
 ///
 /// # Safety
-/// `device` is live; `layout` and `cache` (or null) are of this device.
+/// `device` is live; `layout` and `cache` (or null) are of this device; the module is valid SPIR-V for it.
 pub(super) unsafe fn compute_pipeline(
     device: &ash::Device,
     layout: &Layout,
     cache: vk::PipelineCache,
     name: &str,
+    from: &dyn Modules,
 ) -> Result<vk::Pipeline> {
-    let words = shaders::spirv(name)
-        .ok_or_else(|| Error::Refused(format!("there is no shader module {name}")))?;
-    let info = vk::ShaderModuleCreateInfo::default().code(words);
-    // SAFETY: the words are a valid module; the tests validate every one.
+    let words = from.module(name)?;
+    let info = vk::ShaderModuleCreateInfo::default().code(&words);
+    // SAFETY: the words are a valid module, as the caller promises.
     let module = unsafe { device.create_shader_module(&info, None) }
         .map_err(failed("vkCreateShaderModule"))?;
     let stage = vk::PipelineShaderStageCreateInfo::default()

@@ -3,6 +3,18 @@
 //! The lists are written by `build.rs` from the folder `glsl/`. A module is named like its file (`surface.frag`), or
 //! like its method and stage (`quadtree.tese`).
 
+#[cfg(feature = "shaderc")]
+mod glsl;
+#[cfg(feature = "shaderc")]
+mod live;
+
+use std::borrow::Cow;
+
+use crate::error::{Error, Result};
+
+#[cfg(feature = "shaderc")]
+pub use live::Glsl;
+
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
 /// Puts bytes where words may start: `include_bytes!` promises no alignment.
@@ -18,6 +30,36 @@ pub fn spirv(name: &str) -> Option<&'static [u32]> {
 /// The text of a GLSL source by its path below `glsl/`, for example `lib/bspline.glsl`.
 pub fn source(path: &str) -> Option<&'static str> {
     find(SOURCES, path)
+}
+
+/// Where pipelines get their modules from.
+pub trait Modules {
+    /// The words of a module, ready for `VkShaderModuleCreateInfo`.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] when there is none of this name; that of a compiler, where there is one.
+    fn module(&self, name: &str) -> Result<Cow<'_, [u32]>>;
+
+    /// A hash of all that decides what a module becomes; None when there is none of this name.
+    fn fingerprint(&self, name: &str) -> Option<u64>;
+}
+
+/// The modules that the crate brings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Embedded;
+
+impl Modules for Embedded {
+    fn module(&self, name: &str) -> Result<Cow<'_, [u32]>> {
+        spirv(name).map(Cow::Borrowed).ok_or_else(|| missing(name))
+    }
+
+    fn fingerprint(&self, name: &str) -> Option<u64> {
+        find(FINGERPRINTS, name)
+    }
+}
+
+fn missing(name: &str) -> Error {
+    Error::Refused(format!("there is no shader module {name}"))
 }
 
 /// The lists are sorted by name.

@@ -3,6 +3,7 @@
 mod choice;
 mod copy;
 mod frame;
+mod renew;
 mod surface;
 
 use std::time::Duration;
@@ -12,7 +13,8 @@ use ash::{khr, vk};
 use crate::error::{Error, Result};
 use crate::gpu::failed;
 use crate::host::Device;
-use choice::{choose, extent, usage};
+use choice::{extent, usage};
+use renew::format;
 
 pub use choice::Pacing;
 pub use frame::{Image, Shown};
@@ -60,16 +62,9 @@ impl Swapchain {
         size: [u32; 2],
         pacing: Pacing,
     ) -> Result<Swapchain> {
-        let physical = device.info().physical;
-        // SAFETY: the device is one of the surface's instance.
-        let formats = unsafe {
-            let functions = &surface.functions;
-            functions.get_physical_device_surface_formats(physical, surface.raw)
-        };
-        let formats = formats.map_err(failed("vkGetPhysicalDeviceSurfaceFormatsKHR"))?;
         let mut swapchain = Swapchain {
             functions: khr::swapchain::Device::new(device.instance().raw(), device.raw()),
-            format: choose(&formats)?,
+            format: format(device, &surface)?,
             pacing,
             mode: vk::PresentModeKHR::FIFO,
             extent: vk::Extent2D::default(),
@@ -155,7 +150,7 @@ impl Swapchain {
     /// and must not be destroyed later than this: framebuffers go first.
     ///
     /// # Errors
-    /// Vulkan's own; `ERROR_SURFACE_LOST_KHR` among them, after which surface and swapchain are to be made again.
+    /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
         let physical = self.device.info().physical;
@@ -201,7 +196,7 @@ impl Swapchain {
     /// `record` gets this, a command buffer outside of any render pass, and the image. If it fails nothing is shown, and the error comes back.
     ///
     /// # Errors
-    /// Vulkan's own; those of `record`.
+    /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own; those of `record`.
     pub fn frame(
         &mut self,
         record: impl FnOnce(&Swapchain, vk::CommandBuffer, Image) -> Result<()>,
@@ -299,11 +294,14 @@ impl Swapchain {
             device
                 .reset_fences(&[self.fence])
                 .map_err(failed("vkResetFences"))?;
+            let span = tracing::debug_span!("submit").entered();
             if let Err(code) = device.queue_submit(*queue, &[submit], self.fence) {
                 drop(queue);
                 self.renew_fence();
                 return Err(failed("vkQueueSubmit")(code));
             }
+            drop(span);
+            let _span = tracing::debug_span!("present").entered();
             self.functions.queue_present(*queue, &present)
         };
         match presented {

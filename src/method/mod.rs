@@ -47,6 +47,7 @@
 
 mod bft;
 mod cached;
+mod cell;
 mod displacement;
 mod flat;
 mod options;
@@ -76,6 +77,7 @@ use crate::tessellation::Domain;
 use origin::Origin;
 
 pub use cached::{CachedPass, CachedPoints, Jobs};
+pub use cell::Cell;
 pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;

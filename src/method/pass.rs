@@ -4,6 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::abi;
+use crate::method::cell::Cell;
 use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::table::Table;
 use crate::tessellation::Domain;
@@ -38,12 +39,17 @@ pub struct Pass {
     pub max_level: u32,
     /// What the evaluation shader computes, on the CPU.
     pub twin: Twin,
+    /// Tells by which cell the inside of a patch is evaluated; None where patches have no plans.
+    pub(super) cell: Option<CellAt>,
     /// Of how many control vertices and points it was made. Filled in by [`Method::prepare`](crate::method::Method::prepare).
     pub(super) needs: [usize; 2],
 }
 
 /// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices and points, patch, and where in its domain.
 pub type Twin = fn(&Pass, &Controls, usize, Vec2) -> SurfacePoint;
+
+/// The cell at (u, v) of a patch.
+pub(super) type CellAt = fn(&Pass, usize, Vec2) -> Option<Cell>;
 
 impl Pass {
     /// A pass without patches.
@@ -67,6 +73,7 @@ impl Pass {
             scratch_products: Vec::new(),
             max_level: abi::HIGHEST_LEVEL,
             twin,
+            cell: None,
             needs: [0; 2],
         }
     }
@@ -91,6 +98,15 @@ impl Pass {
         let places = places.par_iter().with_min_len(256);
         let evaluate = |&(patch, uv): &(u32, Vec2)| self.evaluate(controls, patch as usize, uv);
         places.map(evaluate).collect()
+    }
+
+    /// The cell by which patch `patch` is evaluated at `uv` of its own domain, if that lies inside. None where patches have no plans, and where there is
+    /// no such patch or place.
+    pub fn cell(&self, patch: usize, uv: Vec2) -> Option<Cell> {
+        let cell = self
+            .cell
+            .filter(|_| patch < self.patches.len() && !uv.is_nan())?;
+        cell(self, patch, self.domain.nearest(uv.to_array()).into())
     }
 
     /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in

@@ -310,6 +310,7 @@ fn irregular(
         ..
     } = planning;
     pass.cached = Some("quadtree_cached");
+    pass.cell = Some(twin::cell);
     pass.patches.shrink_to_fit();
     pass.texture.shrink_to_fit();
     pass.controls.shrink_to_fit();
@@ -459,6 +460,7 @@ fn pass(
     }
 }
 
+/// By their numbers.
 const NODE_KINDS: [NodeKind; 6] = [
     NodeKind::Internal,
     NodeKind::Regular,

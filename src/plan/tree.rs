@@ -20,6 +20,21 @@ pub enum NodeKind {
     Curve = 6,
 }
 
+impl NodeKind {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            NodeKind::Internal => "internal",
+            NodeKind::Regular => "regular",
+            NodeKind::Boundary => "boundary",
+            NodeKind::Crease => "crease",
+            NodeKind::Terminal => "terminal",
+            NodeKind::Extraordinary => "extraordinary",
+            NodeKind::Curve => "curve",
+        }
+    }
+}
+
 /// A node of the quadtree. Points are numbers of the plan's stencils.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {

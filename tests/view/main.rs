@@ -3,7 +3,11 @@
 #![cfg(all(feature = "view", target_os = "linux"))]
 
 mod display;
+mod losses;
+mod pictures;
 mod random;
+#[cfg(feature = "shaderc")]
+mod shaders;
 mod steps;
 mod window;
 

@@ -48,7 +48,7 @@ fn random_input_breaks_nothing() {
     // Something may play by now: then there is always something left to do.
     let state = session.sooner_or_later("it answers", |state| state["frames"].as_u64() > frames);
     assert_eq!(state["validation"], 0, "{state:#}");
-    session.hand.close(session.window);
+    session.quit();
     let (code, words) = session.end();
     assert!(
         code == Some(0) && !words.contains("panicked"),

@@ -289,7 +289,7 @@ fn changes(session: &Session) {
     session.until("undone again", |state| state["models"][0]["steps"][0] == 0);
     session.press('g');
     session.press('q');
-    session.hand.key(0xff1b, &[]);
+    session.hand.key(keys::ESCAPE, &[]);
     session.until("nothing is picked", |state| {
         state["selection"]["edges"]
             .as_array()
@@ -300,7 +300,7 @@ fn changes(session: &Session) {
 }
 
 /// Clicks from the middle outwards until an edge is picked.
-fn pick_an_edge(session: &Session) {
+pub fn pick_an_edge(session: &Session) {
     let [x, y, width, height] = session.area().map(f64::from);
     for step in 0..40 {
         session
@@ -362,6 +362,21 @@ fn reads_again(session: &Session) {
     let file = session.folder.join("box.obj");
     let version = session.state()["models"][0]["version"][0].clone();
     std::fs::write(&file, BOX.replace("v 1 1 1", "v 2 2 2")).expect("it is written");
+    let state = session.until("what was undone is not lost", |state| {
+        let words = state["notice"].as_str();
+        words.is_some_and(|words| words.contains("box.obj has changed"))
+    });
+    assert_eq!(state["models"][0]["version"][0], version);
+    session.hand.key(keys::F5, &[]);
+    session.until("a word is asked for", |state| state["asked"] == true);
+    session.hand.key(keys::ESCAPE, &[]);
+    session.until("not now", |state| state["asked"] == false);
+    session.hand.key(keys::F5, &[]);
+    session.until("a word is asked for", |state| {
+        state["asked"] == true && state["places"]["lose"].is_array()
+    });
+    let [x, y, width, height] = session.place("lose");
+    session.hand.click([x + 0.5 * width, y + 0.5 * height]);
     session.until("read again", |state| {
         state["models"][0]["version"][0] != version
     });

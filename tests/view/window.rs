@@ -15,7 +15,10 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub mod keys {
     pub const CONTROL: u32 = 0xffe3;
     pub const SHIFT: u32 = 0xffe1;
+    pub const F5: u32 = 0xffc2;
     pub const F12: u32 = 0xffc9;
+    pub const ESCAPE: u32 = 0xff1b;
+    pub const TAB: u32 = 0xff09;
 }
 
 /// A program with a window.
@@ -72,12 +75,24 @@ impl Picture {
 }
 
 impl Session {
-    /// Opens a window on models, in a folder.
+    /// Opens a window on models, in a folder, watched by the validation layer.
     pub fn open(display: &Display, folder: &Path, arguments: &[&str]) -> Session {
+        let arguments = [&["--validation", "--size", "1100x700"], arguments].concat();
+        Session::open_with(display, folder, &arguments, |_| {})
+    }
+
+    /// Opens a window, by a command that is changed before it starts.
+    pub fn open_with(
+        display: &Display,
+        folder: &Path,
+        arguments: &[&str],
+        with: impl FnOnce(&mut Command),
+    ) -> Session {
         let log = folder.join("state.jsonl");
         let home = folder.join("home");
-        let program = Command::new(env!("CARGO_BIN_EXE_hullform"))
-            .args(["view", "--validation", "--size", "1100x700", "--log"])
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hullform"));
+        command
+            .args(["view", "--log"])
             .arg(&log)
             .args(arguments)
             .current_dir(folder)
@@ -85,9 +100,9 @@ impl Session {
             .env_remove("WAYLAND_DISPLAY")
             .env("XDG_CONFIG_HOME", home.join("config"))
             .env("XDG_CACHE_HOME", home.join("cache"))
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
+            .stderr(Stdio::piped());
+        with(&mut command);
+        let program = command.spawn().expect("the program starts");
         let hand = Hand::new(display);
         let started = Instant::now();
         let window = loop {
@@ -199,6 +214,21 @@ impl Session {
             std::thread::sleep(Duration::from_millis(20));
         }
         path
+    }
+
+    /// Closes the window, and what was changed in it is lost.
+    pub fn quit(&self) {
+        self.hand.close(self.window);
+        let started = Instant::now();
+        while started.elapsed() < Duration::from_secs(2) {
+            let state = self.state();
+            if state["asked"] == true {
+                let [x, y, width, height] = self.place("lose");
+                self.hand.click([x + 0.5 * width, y + 0.5 * height]);
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     /// Waits for the end: the exit code, and what it said.

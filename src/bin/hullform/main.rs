@@ -27,7 +27,9 @@ mod refused;
 mod render;
 mod tessellate;
 mod verify;
+#[cfg(feature = "view")]
 mod view;
+mod window;
 
 use clap::{Parser, Subcommand};
 use hullform::error::visible;
@@ -67,7 +69,7 @@ enum Command {
     /// Find out whether a driver keeps the rules that we rely on, and whether we keep our own
     Verify(verify::Arguments),
     /// Open a window on models: look, cut, compare and change them
-    View(view::Arguments),
+    View(window::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -93,7 +95,7 @@ fn main() -> ExitCode {
         Command::Db(arguments) => db::run(arguments, global),
         Command::Devices => devices::run(global),
         Command::Verify(arguments) => verify::run(arguments, global),
-        Command::View(arguments) => view::run(arguments, global),
+        Command::View(arguments) => window::run(arguments, global),
     };
     exit_code(result)
 }
@@ -108,20 +110,27 @@ fn exit_code(result: Result<()>) -> ExitCode {
     ExitCode::from(error.exit_code())
 }
 
-/// Warnings and errors, or what RUST_LOG asks for.
+/// Warnings and errors, or what RUST_LOG asks for. Spans go to Tracy, in a build that knows it.
 fn log_to_stderr() {
     use tracing_subscriber::filter::{EnvFilter, LevelFilter};
-    let filter = EnvFilter::builder()
-        .with_default_directive(LevelFilter::WARN.into())
-        .from_env_lossy();
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    use tracing_subscriber::prelude::*;
+    let filter = EnvFilter::builder().with_default_directive(LevelFilter::WARN.into());
+    let filter = match std::env::var_os("RUST_LOG") {
+        Some(_) => filter.from_env_lossy(),
+        // It warns of desktops that lack what we do not use.
+        None => filter.parse_lossy("warn,winit=error"),
+    };
+    let lines = tracing_subscriber::fmt::layer()
         .with_writer(|| Plain(std::io::stderr()))
         .with_target(false)
         .without_time()
         // It would report a closed stderr on stderr, and panic.
         .log_internal_errors(false)
-        .init();
+        .with_filter(filter);
+    let all = tracing_subscriber::registry().with(lines);
+    #[cfg(feature = "tracy")]
+    let all = all.with(tracing_tracy::TracyLayer::default());
+    all.init();
 }
 
 /// Lines without other control characters: a terminal shall not obey what a driver or a file says.

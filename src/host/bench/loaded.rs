@@ -101,7 +101,10 @@ impl Bench {
         let cache = vk::PipelineCache::null();
         let cached = (options.residence == Residence::Cache)
             // SAFETY: all of one live device.
-            .then(|| unsafe { CachePipelines::new(device, layout, cache, surface.prepared()) });
+            .then(|| unsafe {
+                let (prepared, from) = (surface.prepared(), self.modules());
+                CachePipelines::with_modules(device, layout, cache, prepared, from)
+            });
         // SAFETY: as above.
         let own = |pipelines| unsafe { Owned::new(self.device(), pipelines) };
         Ok(Loaded {

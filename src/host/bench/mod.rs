@@ -10,6 +10,7 @@ use ash::vk;
 
 use crate::error::Result;
 use crate::frame::{Backend, Batch, Residence, SurfaceOptions};
+use crate::gpu::shaders::{Embedded, Modules};
 use crate::gpu::{Fill, Layout, PipelineOptions, Pipelines, Target, View};
 use crate::host::{Device, OffscreenTarget, Owned, PipelineCache, StatisticsQuery};
 use crate::method::Prepared;
@@ -25,6 +26,8 @@ pub struct Bench {
     target: OffscreenTarget,
     layout: Owned<Layout>,
     cache: Option<Arc<PipelineCache>>,
+    /// None for those that the crate brings.
+    modules: Option<Arc<dyn Modules + Send + Sync>>,
     pipelines: RefCell<Vec<(Key, Rc<Owned<Pipelines>>)>>,
     statistics: Option<StatisticsQuery>,
 }
@@ -61,6 +64,24 @@ impl Style {
             compare: vk::CompareOp::LESS_OR_EQUAL,
         }
     }
+
+    /// What pipelines are made of that draw so into a picture, or one whose pass is compatible with its own.
+    pub fn options(self, target: &OffscreenTarget) -> PipelineOptions<'static> {
+        PipelineOptions {
+            target: Target {
+                samples: target.samples(),
+                cull: self.cull,
+                compare: self.compare,
+                ..Target::render_pass(target.render_pass())
+            },
+            backend: self.backend,
+            residence: self.residence,
+            spacing: self.spacing,
+            fill: self.fill,
+            fragment: None,
+            layout: None,
+        }
+    }
 }
 
 /// Batches that are drawn with the same pipelines, as seen in the same view, once or as often as there are instances.
@@ -94,6 +115,7 @@ impl Bench {
             layout: unsafe { Owned::new(&device, layout) },
             pipelines: RefCell::default(),
             cache: None,
+            modules: None,
             device,
         })
     }
@@ -101,6 +123,25 @@ impl Bench {
     /// The same, where pipelines are built with what a cache of its device holds, and are added to it.
     pub fn with_cache(self, cache: Option<Arc<PipelineCache>>) -> Bench {
         Bench { cache, ..self }
+    }
+
+    /// The same, where pipelines are built from other modules than those that the crate brings.
+    ///
+    /// # Safety
+    /// They are valid SPIR-V for its device, with the interfaces that ours have.
+    pub unsafe fn with_modules(self, modules: Arc<dyn Modules + Send + Sync>) -> Bench {
+        Bench {
+            modules: Some(modules),
+            ..self
+        }
+    }
+
+    /// Where its modules are from.
+    fn modules(&self) -> &dyn Modules {
+        match &self.modules {
+            Some(modules) => &**modules,
+            None => &Embedded,
+        }
     }
 
     /// Its device.
@@ -175,23 +216,13 @@ impl Bench {
         style: Style,
         cache: vk::PipelineCache,
     ) -> Result<Owned<Pipelines>> {
-        let options = PipelineOptions {
-            target: Target {
-                samples: self.target.samples(),
-                cull: style.cull,
-                compare: style.compare,
-                ..Target::render_pass(self.target.render_pass())
-            },
-            backend: style.backend,
-            residence: style.residence,
-            spacing: style.spacing,
-            fill: style.fill,
-            fragment: None,
-            layout: None,
-        };
+        let options = style.options(&self.target);
+        let from = self.modules();
         let device = self.device.raw();
         // SAFETY: all of one live device.
-        let built = unsafe { Pipelines::new(device, &self.layout, cache, prepared, &options) };
+        let built = unsafe {
+            Pipelines::with_modules(device, &self.layout, cache, prepared, &options, from)
+        };
         // SAFETY: they were just made by this device.
         built.map(|pipelines| unsafe { Owned::new(&self.device, pipelines) })
     }

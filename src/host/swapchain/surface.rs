@@ -51,9 +51,17 @@ impl WindowSurface {
     }
 }
 
+impl WindowSurface {
+    /// Destroys it before it is dropped: a window has one surface at a time that is drawn to.
+    pub(super) fn destroy(&mut self) {
+        // SAFETY: it is ours, and its swapchain has gone: see `Swapchain`; null handles are allowed.
+        unsafe { self.functions.destroy_surface(self.raw, None) };
+        self.raw = vk::SurfaceKHR::null();
+    }
+}
+
 impl Drop for WindowSurface {
     fn drop(&mut self) {
-        // SAFETY: it is ours, and its swapchain has gone: see `Swapchain::drop`.
-        unsafe { self.functions.destroy_surface(self.raw, None) };
+        self.destroy();
     }
 }

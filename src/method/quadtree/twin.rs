@@ -6,13 +6,14 @@
 use glam::{Vec2, Vec3};
 
 use crate::abi;
-use crate::method::Pass;
+use crate::method::quadtree::NODE_KINDS;
 use crate::method::quadtree::places::place_at;
 use crate::method::quadtree::view::{self, Border};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
+use crate::method::{Cell, Pass};
 use crate::patch::bspline::{Basis, basis, basis_of};
 use crate::patch::crease::crease_basis;
-use crate::plan::{Plans, Row, RowsView, walk};
+use crate::plan::{Leaf, Plans, Row, RowsView, walk};
 
 /// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,6 +174,11 @@ pub(crate) fn node_kind(pass: &Pass, patch: usize, uv: Vec2) -> Option<u32> {
     if pass.tables.len() <= view::BORDERS {
         return None;
     }
+    Some(inside(pass, patch, uv).kind)
+}
+
+/// Where the walk of a patch's inside ends.
+fn inside(pass: &Pass, patch: usize, uv: Vec2) -> Leaf {
     let border = Border::of(pass, patch);
     let uv = if border.is_mirrored() {
         Vec2::new(uv.y, uv.x)
@@ -180,7 +186,19 @@ pub(crate) fn node_kind(pass: &Pass, patch: usize, uv: Vec2) -> Option<u32> {
         uv
     };
     let leaf = walk(plans(pass), border.used(0).root, uv);
-    Some(leaf.expect("borders have the roots of packed trees").kind)
+    leaf.expect("borders have the roots of packed trees")
+}
+
+/// The cell at (u, v) of a patch. Plans are numbered as they are packed, by their roots.
+pub(super) fn cell(pass: &Pass, patch: usize, uv: Vec2) -> Option<Cell> {
+    let Leaf { kind, scale, .. } = inside(pass, patch, uv);
+    let roots = view::roots(pass);
+    let root = Border::of(pass, patch).used(0).root;
+    Some(Cell {
+        plan: roots.range(..root).count() as u32,
+        kind: *NODE_KINDS.get(kind as usize)?,
+        depth: scale.log2() as u32,
+    })
 }
 
 /// From along a patch's edge to along the whole edge in its own direction.

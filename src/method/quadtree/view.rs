@@ -1,5 +1,7 @@
 //! The border of a patch, as the shaders read it.
 
+use std::collections::BTreeSet;
+
 use crate::abi;
 use crate::method::Pass;
 
@@ -60,6 +62,16 @@ impl<'a> Border<'a> {
     pub fn end(self, level: u32, number: usize) -> u32 {
         ends_of(self.ends, level as usize)[number]
     }
+}
+
+/// The roots of all plans of insides.
+pub(super) fn roots(pass: &Pass) -> BTreeSet<u32> {
+    let records: &[abi::Border] = bytemuck::cast_slice(&pass.tables[BORDERS]);
+    let uses: &[abi::Use] = bytemuck::cast_slice(&pass.tables[USES]);
+    let roots = records
+        .iter()
+        .map(|record| uses[record.uses[0] as usize].root);
+    roots.collect()
 }
 
 /// Where the points of each use end at a level.

@@ -106,6 +106,8 @@ macro_rules! objects {
 }
 
 objects! {
+    Instance SurfaceKHR by vkCreateXlibSurfaceKHR: PFN_vkCreateXlibSurfaceKHR(XlibSurfaceCreateInfoKHR),
+        vkDestroySurfaceKHR: PFN_vkDestroySurfaceKHR;
     Instance DebugUtilsMessengerEXT by vkCreateDebugUtilsMessengerEXT: PFN_vkCreateDebugUtilsMessengerEXT(DebugUtilsMessengerCreateInfoEXT),
         vkDestroyDebugUtilsMessengerEXT: PFN_vkDestroyDebugUtilsMessengerEXT;
     Device DeviceMemory by vkAllocateMemory: PFN_vkAllocateMemory(MemoryAllocateInfo), vkFreeMemory: PFN_vkFreeMemory;
@@ -126,6 +128,10 @@ objects! {
     Device Framebuffer by vkCreateFramebuffer: PFN_vkCreateFramebuffer(FramebufferCreateInfo), vkDestroyFramebuffer: PFN_vkDestroyFramebuffer;
     Device CommandPool by vkCreateCommandPool: PFN_vkCreateCommandPool(CommandPoolCreateInfo), vkDestroyCommandPool: PFN_vkDestroyCommandPool;
     Device Fence by vkCreateFence: PFN_vkCreateFence(FenceCreateInfo), vkDestroyFence: PFN_vkDestroyFence;
+    Device Semaphore by vkCreateSemaphore: PFN_vkCreateSemaphore(SemaphoreCreateInfo), vkDestroySemaphore: PFN_vkDestroySemaphore;
+    Device Sampler by vkCreateSampler: PFN_vkCreateSampler(SamplerCreateInfo), vkDestroySampler: PFN_vkDestroySampler;
+    Device SwapchainKHR by vkCreateSwapchainKHR: PFN_vkCreateSwapchainKHR(SwapchainCreateInfoKHR),
+        vkDestroySwapchainKHR: PFN_vkDestroySwapchainKHR;
     Device QueryPool by vkCreateQueryPool: PFN_vkCreateQueryPool(QueryPoolCreateInfo), vkDestroyQueryPool: PFN_vkDestroyQueryPool;
 }
 
@@ -163,6 +169,23 @@ passed_on! {
     vkDeviceWaitIdle: PFN_vkDeviceWaitIdle(device: vk::Device) idle;
     vkWaitForFences: PFN_vkWaitForFences(device: vk::Device, count: u32, fences: *const vk::Fence, all: u32, timeout: u64) idle;
     vkGetFenceStatus: PFN_vkGetFenceStatus(device: vk::Device, fence: vk::Fence) idle;
+    vkFreeDescriptorSets: PFN_vkFreeDescriptorSets(
+        device: vk::Device, pool: vk::DescriptorPool, count: u32, sets: *const vk::DescriptorSet) nothing;
+    vkFlushMappedMemoryRanges: PFN_vkFlushMappedMemoryRanges(
+        device: vk::Device, count: u32, ranges: *const vk::MappedMemoryRange<'_>) nothing;
+    vkGetSwapchainImagesKHR: PFN_vkGetSwapchainImagesKHR(
+        device: vk::Device, swapchain: vk::SwapchainKHR, count: *mut u32, images: *mut vk::Image) nothing;
+    vkAcquireNextImageKHR: PFN_vkAcquireNextImageKHR(
+        device: vk::Device, swapchain: vk::SwapchainKHR, timeout: u64, semaphore: vk::Semaphore, fence: vk::Fence, number: *mut u32) nothing;
+    vkQueuePresentKHR: PFN_vkQueuePresentKHR(queue: vk::Queue, info: *const vk::PresentInfoKHR<'_>) nothing;
+    vkGetPhysicalDeviceSurfaceSupportKHR: PFN_vkGetPhysicalDeviceSurfaceSupportKHR(
+        device: vk::PhysicalDevice, family: u32, surface: vk::SurfaceKHR, supported: *mut u32) nothing;
+    vkGetPhysicalDeviceSurfaceCapabilitiesKHR: PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR(
+        device: vk::PhysicalDevice, surface: vk::SurfaceKHR, able: *mut vk::SurfaceCapabilitiesKHR) nothing;
+    vkGetPhysicalDeviceSurfaceFormatsKHR: PFN_vkGetPhysicalDeviceSurfaceFormatsKHR(
+        device: vk::PhysicalDevice, surface: vk::SurfaceKHR, count: *mut u32, formats: *mut vk::SurfaceFormatKHR) nothing;
+    vkGetPhysicalDeviceSurfacePresentModesKHR: PFN_vkGetPhysicalDeviceSurfacePresentModesKHR(
+        device: vk::PhysicalDevice, surface: vk::SurfaceKHR, count: *mut u32, modes: *mut vk::PresentModeKHR) nothing;
     vkCreateGraphicsPipelines: PFN_vkCreateGraphicsPipelines(
         device: vk::Device, cache: vk::PipelineCache, count: u32, infos: *const vk::GraphicsPipelineCreateInfo<'_>,
         callbacks: Callbacks<'_>, made: *mut vk::Pipeline) || pipelines_made(made, count);
@@ -245,13 +268,19 @@ draws! {
 }
 
 /// What is asked for below an instance.
-pub const OF_INSTANCES: [&str; 6] = [
+pub const OF_INSTANCES: [&str; 12] = [
     "vkDestroyInstance",
     "vkCreateDevice",
     "vkEnumeratePhysicalDevices",
     "vkEnumerateDeviceExtensionProperties",
     "vkCreateDebugUtilsMessengerEXT",
     "vkDestroyDebugUtilsMessengerEXT",
+    "vkCreateXlibSurfaceKHR",
+    "vkDestroySurfaceKHR",
+    "vkGetPhysicalDeviceSurfaceSupportKHR",
+    "vkGetPhysicalDeviceSurfaceCapabilitiesKHR",
+    "vkGetPhysicalDeviceSurfaceFormatsKHR",
+    "vkGetPhysicalDeviceSurfacePresentModesKHR",
 ];
 
 /// The layer's own function of this name.
@@ -275,7 +304,8 @@ pub fn function(name: &str) -> Option<*const c_void> {
 
 /// Functions that return nothing, make nothing, destroy nothing and draw nothing. Commands are such, those apart that a layer must see.
 pub fn cannot_fail(name: &str) -> bool {
-    const OTHERS: [&str; 18] = [
+    const OTHERS: [&str; 19] = [
+        "vkFreeCommandBuffers",
         "vkGetDeviceQueue",
         "vkGetBufferMemoryRequirements",
         "vkGetImageMemoryRequirements",

@@ -4,29 +4,24 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use hullform::ash::vk;
-use hullform::host::{Device, Instance, Shown, WindowSurface};
+use hullform::host::Shown;
 use hullform::{Error, Result};
 use winit::application::ApplicationHandler;
-use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
-use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 use winit::window::{Window, WindowId};
 
-use super::Arguments;
-use super::canvas::{Canvas, Panels};
-use super::context::Context;
+use super::canvas::Panels;
 use super::log::Log;
-use super::program::Program;
+use super::program::{Changes, Program, Setting};
 use super::settings::Settings;
-use super::viewer::Viewer;
+use super::surroundings::{Losses, Surroundings, instance, no_display};
+use super::viewer::{Intent, Viewer};
 use super::workers::Wake;
-use crate::gpu::Gpu;
 use crate::options::Global;
+use crate::window::Arguments;
 
-/// Samples a pixel.
-const SAMPLES: u32 = 4;
 /// How often a frame that is being drawn is looked after.
 const GLANCE: Duration = Duration::from_millis(2);
 /// How long after a scene its costs are told.
@@ -55,14 +50,6 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     app.finish()
 }
 
-/// Why there is no window, and what to do without.
-fn no_display(words: &str) -> Error {
-    let words = words.lines().next().unwrap_or_default().trim();
-    Error::NoDisplay(format!(
-        "{words}; set DISPLAY or WAYLAND_DISPLAY to a display that runs, or draw into a file with `hullform render`"
-    ))
-}
-
 struct App<'a> {
     arguments: &'a Arguments,
     global: &'a Global,
@@ -85,8 +72,10 @@ struct Open {
     log: Log,
     /// Where settings are written in the end.
     settings: Option<PathBuf>,
-    instance: Instance,
-    window: Arc<Window>,
+    /// Files that were dropped since the last frame: several are a scene.
+    dropped: Vec<Option<PathBuf>>,
+    losses: Losses,
+    surroundings: Surroundings,
 }
 
 impl ApplicationHandler<Woken> for App<'_> {
@@ -123,10 +112,14 @@ impl ApplicationHandler<Woken> for App<'_> {
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        match open.advance() {
-            Ok(true) => self.end(events, Ok(())),
-            Ok(false) => events.set_control_flow(open.flow()),
-            Err(error) => self.end(events, Err(error)),
+        let advanced = match open.advance() {
+            Err(error) if open.may_recover(&error) => self.recover(error),
+            advanced => advanced,
+        };
+        match (advanced, &self.open) {
+            (Ok(false), Some(open)) => events.set_control_flow(open.flow()),
+            (Ok(_), _) => self.end(events, Ok(())),
+            (Err(error), _) => self.end(events, Err(error)),
         }
     }
 }
@@ -137,9 +130,40 @@ impl App<'_> {
         events.exit();
     }
 
+    /// Goes on after the surface or the device was lost; what is shown and what was changed stay.
+    fn recover(&mut self, error: Error) -> Result<bool> {
+        tracing::info!("{error}; beginning anew");
+        let Some(mut open) = self.open.take() else {
+            return Err(error);
+        };
+        let words = match error {
+            Error::SurfaceLost { .. } => {
+                let around = &open.surroundings;
+                let renewed = open.program.renew(around.size(), || around.surface());
+                if let Err(error) = renewed {
+                    self.open = Some(open);
+                    return Err(error);
+                }
+                "the window's surface was lost, and is made anew"
+            }
+            _ => {
+                open = open.again()?;
+                "the device was lost, and is opened anew"
+            }
+        };
+        open.program.viewer.notices.warn(words);
+        open.wanted = true;
+        self.open = Some(open);
+        Ok(false)
+    }
+
     /// Closes everything, and gives the validation layer the last word.
     fn finish(self) -> Result<()> {
         let App { open, result, .. } = self;
+        if let (Some(open), Err(_)) = (&open, &result) {
+            let saved = Changes::of(&open.program.viewer).save();
+            saved.iter().for_each(|words| tracing::warn!("{words}"));
+        }
         let closed = open.map_or(Ok(()), Open::close);
         result.and(closed)
     }
@@ -163,13 +187,7 @@ impl Open {
             .with_min_inner_size(LogicalSize::new(320, 240));
         let window = events.create_window(attributes);
         let window = Arc::new(window.map_err(|error| no_display(&error.to_string()))?);
-        let (instance, surface) = surface(&window, global.validation)?;
-        let device = Device::open_for(&instance, global.device.as_deref(), &surface)?;
-        let gpu = Gpu::of(instance.clone(), device, global)?;
-        let PhysicalSize { width, height } = window.inner_size();
-        let canvas = Canvas::new(&gpu.device, surface, [width, height], samples(&gpu.device))?;
-        let format = canvas.scene_format();
-        let context = Context::new(gpu, global, format, samples(canvas.device()))?;
+        let instance = instance(&window, global.validation)?;
         let wake: Wake = Arc::new(move || {
             // The loop has ended when this fails.
             let _ = proxy.send_event(Woken);
@@ -180,16 +198,17 @@ impl Open {
             true => viewer.open([None]),
             false => viewer.open(arguments.models.iter().cloned().map(Some)),
         }
-        let shape = arguments.shape.clone();
-        let program = Program::new(viewer, canvas, context, shape, wake)?;
-        let input = egui_winit::State::new(
-            program.egui.clone(),
-            egui::ViewportId::ROOT,
-            &window,
-            Some(window.scale_factor() as f32),
-            None,
-            Some(program.context.device().limits().max_image_dimension2_d as usize),
-        );
+        let surroundings = Surroundings {
+            instance,
+            global: global.clone(),
+            setting: Setting {
+                glsl: super::glsl::folder(arguments.glsl.as_deref())?,
+                shape: arguments.shape.clone(),
+                wake,
+            },
+            window,
+        };
+        let (program, input) = surroundings.program(viewer)?;
         Ok(Open {
             program,
             input,
@@ -199,25 +218,75 @@ impl Open {
             advanced: Instant::now(),
             log,
             settings: file,
-            instance,
-            window,
+            dropped: Vec::new(),
+            losses: Losses::default(),
+            surroundings,
+        })
+    }
+
+    /// Whether an error is one after which one may go on.
+    fn may_recover(&mut self, error: &Error) -> bool {
+        error.is_of_device() && self.losses.may_go_on()
+    }
+
+    /// The same with another program, that shows what the old one did. Where that fails what was changed is saved.
+    fn again(self) -> Result<Open> {
+        let Open {
+            program,
+            due,
+            advanced,
+            log,
+            settings,
+            dropped,
+            losses,
+            surroundings,
+            ..
+        } = self;
+        // A window has one surface at a time: the old one goes first.
+        let viewer = program.give_up();
+        let changes = Changes::of(&viewer);
+        let made = surroundings.program(viewer);
+        let (program, input) = made.inspect_err(|_| {
+            let saved = changes.save();
+            saved.iter().for_each(|words| tracing::warn!("{words}"));
+        })?;
+        Ok(Open {
+            program,
+            input,
+            panels: Panels::default(),
+            due,
+            wanted: true,
+            advanced,
+            log,
+            settings,
+            dropped,
+            losses,
+            surroundings,
         })
     }
 
     /// Takes an event; whether that was the end.
     fn take(&mut self, event: WindowEvent) -> Result<bool> {
         match &event {
-            WindowEvent::CloseRequested | WindowEvent::Destroyed => return Ok(true),
+            WindowEvent::Destroyed => return Ok(true),
+            WindowEvent::CloseRequested => {
+                self.program.viewer.intend(Intent::Quit);
+                self.wanted = true;
+                return Ok(false);
+            }
             WindowEvent::RedrawRequested => {
                 self.wanted = true;
                 return Ok(false);
             }
             WindowEvent::DroppedFile(path) => {
-                self.program.viewer.open([Some(path.clone())]);
+                self.dropped.push(Some(path.clone()));
+                self.wanted = true;
             }
             _ => {}
         }
-        let response = self.input.on_window_event(&self.window, &event);
+        let response = self
+            .input
+            .on_window_event(&self.surroundings.window, &event);
         self.wanted |= response.repaint || matches!(event, WindowEvent::Resized(_));
         Ok(false)
     }
@@ -229,17 +298,20 @@ impl Open {
         }
         self.wanted = false;
         self.due = None;
-        let PhysicalSize { width, height } = self.window.inner_size();
-        let size = [width, height];
+        let size = self.surroundings.size();
         self.program.canvas.pace(self.program.viewer.pacing);
         if self.program.canvas.is_stale() || self.program.canvas.size() != size {
             self.program.resize(size)?;
+        }
+        if !self.dropped.is_empty() {
+            let dropped = std::mem::take(&mut self.dropped);
+            self.program.viewer.intend(Intent::Open(dropped));
         }
         self.program.take_shot()?;
         self.program.take()?;
         self.program.read_off();
         self.pass_time();
-        let input = self.input.take_egui_input(&self.window);
+        let input = self.input.take_egui_input(&self.surroundings.window);
         let output = self.program.panels(input);
         self.program.start()?;
         let delay = output
@@ -248,7 +320,7 @@ impl Open {
             .map(|own| own.repaint_delay)
             .min();
         self.input
-            .handle_platform_output(&self.window, output.platform_output);
+            .handle_platform_output(&self.surroundings.window, output.platform_output);
         self.panels.scale = output.pixels_per_point;
         self.panels.primitives = self
             .program
@@ -259,6 +331,7 @@ impl Open {
             return Ok(true);
         }
         let outcome = self.program.show(&self.panels)?;
+        tracing::trace!(tracy.frame_mark = true);
         self.panels.textures.clear();
         let program = &self.program;
         self.log.add(|| program.state());
@@ -274,6 +347,9 @@ impl Open {
             soon = Some(soon.map_or(PROGRESS, |delay| delay.min(PROGRESS)));
         }
         if let Some(left) = self.program.viewer.notices.until_change() {
+            soon = Some(soon.map_or(left, |delay| delay.min(left)));
+        }
+        if let Some(left) = self.program.until_full() {
             soon = Some(soon.map_or(left, |delay| delay.min(left)));
         }
         self.due = soon.map(|delay| Instant::now() + delay.max(GLANCE));
@@ -297,8 +373,8 @@ impl Open {
     }
 
     fn close(self) -> Result<()> {
-        let scale = self.window.scale_factor();
-        let size: LogicalSize<u32> = self.window.inner_size().to_logical(scale);
+        let scale = self.surroundings.window.scale_factor();
+        let size: LogicalSize<u32> = self.surroundings.window.inner_size().to_logical(scale);
         let size = Some([size.width, size.height]).filter(|size| !size.contains(&0));
         if let Some(file) = &self.settings {
             let settings = Settings::of_viewer(&self.program.viewer, size);
@@ -310,45 +386,11 @@ impl Open {
             }
         }
         let Open {
-            program, instance, ..
+            program,
+            surroundings,
+            ..
         } = self;
         program.close()?;
-        crate::gpu::check(&instance)
+        crate::gpu::check(&surroundings.instance)
     }
-}
-
-/// An instance that draws to windows, and the window's surface.
-fn surface(window: &Window, validation: bool) -> Result<(Instance, WindowSurface)> {
-    let handle = |error: &dyn std::fmt::Display| no_display(&error.to_string());
-    let display = window
-        .display_handle()
-        .map_err(|error| handle(&error))?
-        .as_raw();
-    let raw = window
-        .window_handle()
-        .map_err(|error| handle(&error))?
-        .as_raw();
-    let names = ash_window::enumerate_required_extensions(display);
-    let names = names.map_err(|error| handle(&error))?;
-    let names: Vec<&'static std::ffi::CStr> = names
-        .iter()
-        // SAFETY: ash-window's names are static C strings.
-        .map(|&name| unsafe { std::ffi::CStr::from_ptr(name) })
-        .collect();
-    let instance = Instance::with_extensions(validation, &names)?;
-    // SAFETY: the instance has the extensions for this display; the window outlives the surface, since it is dropped last.
-    let made =
-        unsafe { ash_window::create_surface(instance.entry(), instance.raw(), display, raw, None) };
-    let made = made.map_err(super::canvas::vulkan("creating the window's surface"))?;
-    // SAFETY: it was just made from this instance.
-    let surface = unsafe { WindowSurface::new(&instance, made) };
-    Ok((instance, surface))
-}
-
-/// As many samples as the device has, up to four.
-fn samples(device: &Device) -> u32 {
-    let limits = device.limits();
-    let able = limits.framebuffer_color_sample_counts & limits.framebuffer_depth_sample_counts;
-    let fits = |count: &u32| able.contains(vk::SampleCountFlags::from_raw(*count));
-    [SAMPLES, 2].into_iter().find(fits).unwrap_or(1)
 }

@@ -84,11 +84,6 @@ impl Canvas {
         self.swapchain.picture_format()
     }
 
-    /// The device.
-    pub fn device(&self) -> &Device {
-        &self.device
-    }
-
     /// Draws only a part of the scene's picture from now on.
     pub fn confine(&mut self, area: Area) {
         if let Some(target) = &mut self.target {
@@ -127,6 +122,19 @@ impl Canvas {
         self.destroy_framebuffers();
         self.shot = None;
         self.swapchain.resize(size)?;
+        self.make_images()
+    }
+
+    /// Goes on in another surface of the window, since the old one was lost.
+    pub fn renew(
+        &mut self,
+        size: [u32; 2],
+        surface: impl FnOnce() -> Result<WindowSurface>,
+    ) -> Result<()> {
+        self.swapchain.wait()?;
+        self.destroy_framebuffers();
+        self.shot = None;
+        self.swapchain.renew(size, surface)?;
         self.make_images()
     }
 

@@ -11,7 +11,7 @@ use hullform::tessellation::Spacing;
 use super::context::greatest_level;
 use super::orbit::Preset;
 use super::selection::Tool;
-use super::viewer::{Beside, Cull, ErrorKind, Viewer, Wish};
+use super::viewer::{Beside, Cull, ErrorKind, Intent, Viewer, Wish};
 use crate::render::Shading;
 
 /// Something to do.
@@ -109,34 +109,17 @@ pub struct Binding {
     pub words: &'static str,
 }
 
+const fn held(modifiers: Modifiers, key: Key, command: Command, words: &'static str) -> Binding {
+    Binding {
+        modifiers,
+        key,
+        command,
+        words,
+    }
+}
+
 const fn plain(key: Key, command: Command, words: &'static str) -> Binding {
-    let modifiers = Modifiers::NONE;
-    Binding {
-        modifiers,
-        key,
-        command,
-        words,
-    }
-}
-
-const fn control(key: Key, command: Command, words: &'static str) -> Binding {
-    let modifiers = Modifiers::COMMAND;
-    Binding {
-        modifiers,
-        key,
-        command,
-        words,
-    }
-}
-
-const fn shift(key: Key, command: Command, words: &'static str) -> Binding {
-    let modifiers = Modifiers::SHIFT;
-    Binding {
-        modifiers,
-        key,
-        command,
-        words,
-    }
+    held(Modifiers::NONE, key, command, words)
 }
 
 /// All keys, in the order in which they are told.
@@ -165,7 +148,7 @@ pub const KEYS: &[Binding] = &[
     plain(Key::Equals, Command::Level(1.0), "finer"),
     plain(Key::Minus, Command::Level(-1.0), "coarser"),
     plain(Key::M, Command::Method, "next method"),
-    shift(Key::M, Command::Scheme, "next scheme"),
+    held(Modifiers::SHIFT, Key::M, Command::Scheme, "next scheme"),
     plain(Key::B, Command::Backend, "next back-end"),
     plain(Key::R, Command::Residence, "ring or cache"),
     plain(Key::L, Command::Spacing, "spacing"),
@@ -173,7 +156,12 @@ pub const KEYS: &[Binding] = &[
     plain(Key::K, Command::Cull, "culling"),
     plain(Key::Z, Command::Freeze, "freeze the camera that cuts"),
     plain(Key::S, Command::Split, "split with another method"),
-    shift(Key::S, Command::SideBySide, "side by side"),
+    held(
+        Modifiers::SHIFT,
+        Key::S,
+        Command::SideBySide,
+        "side by side",
+    ),
     plain(Key::E, Command::ErrorMap, "map of errors"),
     plain(Key::X, Command::Amplify, "amplify cracks"),
     plain(Key::Q, Command::Pick(Tool::Look), "pick nothing"),
@@ -185,13 +173,28 @@ pub const KEYS: &[Binding] = &[
     plain(Key::I, Command::Infinite, "infinitely sharp, or smooth"),
     plain(Key::H, Command::Hole, "hole, or not"),
     plain(Key::Escape, Command::Unpick, "pick nothing"),
-    control(Key::Z, Command::Undo, "undo"),
-    control(Key::Y, Command::Redo, "redo"),
-    control(Key::S, Command::Save, "save as OBJ with tags"),
+    held(Modifiers::COMMAND, Key::Z, Command::Undo, "undo"),
+    held(Modifiers::COMMAND, Key::Y, Command::Redo, "redo"),
+    held(
+        Modifiers::COMMAND,
+        Key::S,
+        Command::Save,
+        "save as OBJ with tags",
+    ),
     plain(Key::Space, Command::Play, "play or pause"),
     plain(Key::F12, Command::Screenshot, "save what is seen"),
-    shift(Key::F12, Command::Render, "save what render makes of it"),
-    control(Key::C, Command::CopyLine, "copy the command line"),
+    held(
+        Modifiers::SHIFT,
+        Key::F12,
+        Command::Render,
+        "save what render makes of it",
+    ),
+    held(
+        Modifiers::COMMAND,
+        Key::C,
+        Command::CopyLine,
+        "copy the command line",
+    ),
     plain(
         Key::Period,
         Command::Neighbour(true),
@@ -199,9 +202,10 @@ pub const KEYS: &[Binding] = &[
     ),
     plain(Key::Comma, Command::Neighbour(false), "the file before"),
     plain(Key::F5, Command::Reload, "read the files again"),
+    // Taken before egui sees it.
     plain(Key::Tab, Command::Panels, "panels"),
     plain(Key::F1, Command::Sheet, "these keys (also ?)"),
-    control(Key::Q, Command::Quit, "quit"),
+    held(Modifiers::COMMAND, Key::Q, Command::Quit, "quit"),
 ];
 
 /// The words for a key, as they stand on it.
@@ -359,8 +363,8 @@ impl Viewer {
             Command::Render => self.wishes.push(Wish::Render),
             Command::CopyLine => self.wishes.push(Wish::CopyCommand),
             Command::Save => self.wishes.push(Wish::Save),
-            Command::Quit => self.wishes.push(Wish::Quit),
-            Command::Reload => self.parts.iter_mut().for_each(|part| part.unread = true),
+            Command::Quit => self.intend(Intent::Quit),
+            Command::Reload => self.intend(Intent::Reload),
             Command::Neighbour(ahead) => self.neighbour(ahead),
             other => self.edit(other),
         }
@@ -379,7 +383,7 @@ impl Viewer {
             return;
         };
         match super::folder::neighbour(&file, ahead) {
-            Some(other) => self.open([Some(other)]),
+            Some(other) => self.intend(Intent::Open(vec![Some(other)])),
             None => self
                 .notices
                 .tell("there is no other OBJ file in the folder"),

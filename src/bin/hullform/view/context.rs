@@ -3,16 +3,18 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use hullform::Result;
 use hullform::ash::vk;
+use hullform::gpu::shaders::{Embedded, Modules};
 use hullform::gpu::{
-    Backend, CachePipelines, DrawList, Layout, PipelineOptions, Pipelines, Residence, Slots,
-    SurfaceOptions, Target, TessellatedSurface,
+    Backend, CachePipelines, DrawList, Fill, Layout, Pipelines, Residence, Slots, SurfaceOptions,
+    TessellatedSurface,
 };
 use hullform::host::{Device, OffscreenTarget, Owned, Style};
 use hullform::mesh::{ControlMesh, Model};
-use hullform::method::{MethodOptions, Prepared, method, prepare_by_default};
+use hullform::method::{MethodOptions, Prepared, method, prepare_by_default_with};
+use hullform::{Error, Result};
 
+use crate::db::database;
 use crate::gpu::Gpu;
 use crate::options::Global;
 
@@ -32,9 +34,27 @@ pub struct Recipe {
 /// What pipelines are for: the shaders of the passes, and how they are drawn.
 pub type Key = (Vec<&'static str>, Style);
 
+/// Pipelines that have been made.
+pub type Made = Vec<(Key, Arc<Owned<Pipelines>>)>;
+
+/// Where shaders are from, and which of all that there have been they are.
+#[derive(Clone)]
+pub struct Shaders {
+    /// Grows with each change.
+    pub version: u64,
+    /// Their modules.
+    pub modules: Arc<dyn Modules + Send + Sync>,
+}
+
+/// Pipelines with the shaders that all of them are made of.
+struct Kept {
+    shaders: Shaders,
+    pipelines: Made,
+}
+
 /// What surfaces share. Fields are dropped in this order.
 pub struct Context {
-    pipelines: Mutex<Vec<(Key, Arc<Owned<Pipelines>>)>>,
+    kept: Mutex<Kept>,
     layout: Owned<Layout>,
     /// A picture like those that are drawn into, which pipelines are made for: it stays when the window changes.
     mould: OffscreenTarget,
@@ -63,8 +83,7 @@ pub struct Drawn {
 impl Drawn {
     /// What pipelines must be for to draw it.
     pub fn key(&self, style: Style) -> Key {
-        let passes = self.surface.prepared().passes.iter();
-        (passes.map(|pass| pass.shader).collect(), style)
+        key(self.surface.prepared(), style)
     }
 }
 
@@ -75,7 +94,13 @@ impl Context {
         // SAFETY: the device is live.
         let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
         Ok(Context {
-            pipelines: Mutex::default(),
+            kept: Mutex::new(Kept {
+                shaders: Shaders {
+                    version: 0,
+                    modules: Arc::new(Embedded),
+                },
+                pipelines: Vec::new(),
+            }),
             // SAFETY: the layout was just made by this device.
             layout: unsafe { Owned::new(device, layout) },
             mould: OffscreenTarget::with_format(device, 1, 1, samples, format)?,
@@ -102,13 +127,12 @@ impl Context {
     /// Prepares a model and brings it to the device. Takes its time: for workers.
     pub fn place(&self, model: &Model, recipe: Recipe) -> Result<Drawn> {
         let started = Instant::now();
-        let options = MethodOptions::default();
-        let (prepared, refusals) = match recipe.method {
-            Some(name) => (method(name)?.prepare(model, options)?, Vec::new()),
-            None => prepare_by_default(model, options)?,
-        };
+        let span = tracing::debug_span!("prepare").entered();
+        let (prepared, refusals) = prepare(model, recipe.method)?;
+        drop(span);
         let seconds = started.elapsed().as_secs_f64();
         let started = Instant::now();
+        let _span = tracing::debug_span!("upload").entered();
         let mut drawn = self.upload(model, prepared, recipe)?;
         drawn.seconds = [seconds, started.elapsed().as_secs_f64()];
         drawn.refusals = refusals.iter().map(ToString::to_string).collect();
@@ -147,8 +171,9 @@ impl Context {
         let mut surface = unsafe { Owned::new(device, surface) };
         let made = (recipe.residence == Residence::Cache).then(|| {
             let (cache, prepared) = (self.gpu.pipeline_cache(), surface.prepared());
-            // SAFETY: all of one live device.
-            unsafe { CachePipelines::new(device.raw(), layout, cache, prepared) }
+            let from = self.shaders().modules;
+            // SAFETY: all of one live device; the modules are ours, or what somebody makes of them to look at.
+            unsafe { CachePipelines::with_modules(device.raw(), layout, cache, prepared, &*from) }
         });
         // SAFETY: as above.
         let own = |pipelines| unsafe { Owned::new(device, pipelines) };
@@ -170,41 +195,94 @@ impl Context {
         })
     }
 
+    /// The shaders that everything is made of.
+    pub fn shaders(&self) -> Shaders {
+        self.kept().shaders.clone()
+    }
+
     /// Pipelines that have been made.
     pub fn ready(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
-        let all = self.kept();
-        let found = all.iter().find(|(other, _)| other == key);
-        found.map(|(_, pipelines)| pipelines.clone())
+        find(&self.kept().pipelines, key)
+    }
+
+    /// The same, or others that draw the same patches in another look until these are there.
+    pub fn ready_or_like(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
+        let kept = self.kept();
+        let lines = |fill| fill == Fill::Lines;
+        let like = |(shaders, style): &Key| {
+            let of = |style: &Style| {
+                (
+                    style.backend,
+                    style.residence,
+                    style.spacing,
+                    lines(style.fill),
+                )
+            };
+            *shaders == key.0 && of(style) == of(&key.1)
+        };
+        let found = kept.pipelines.iter().rev().find(|(other, _)| like(other));
+        find(&kept.pipelines, key).or_else(|| found.map(|(_, pipelines)| pipelines.clone()))
     }
 
     /// Makes pipelines, unless they are there. Takes its time: for workers.
     pub fn make(&self, prepared: &Prepared, style: Style) -> Result<Arc<Owned<Pipelines>>> {
-        let shaders = prepared.passes.iter().map(|pass| pass.shader);
-        let key = (shaders.collect(), style);
+        let key = key(prepared, style);
         if let Some(ready) = self.ready(&key) {
             return Ok(ready);
         }
-        let options = PipelineOptions {
-            target: Target {
-                samples: self.mould.samples(),
-                cull: style.cull,
-                compare: style.compare,
-                ..Target::render_pass(self.mould.render_pass())
-            },
-            backend: style.backend,
-            residence: style.residence,
-            spacing: style.spacing,
-            fill: style.fill,
-            fragment: None,
-            layout: None,
-        };
-        let (device, cache) = (self.device(), self.gpu.pipeline_cache());
-        // SAFETY: all of one live device.
-        let made = unsafe { Pipelines::new(device.raw(), &self.layout, cache, prepared, &options) };
-        // SAFETY: they were just made by this device.
-        let made = Arc::new(unsafe { Owned::new(device, made?) });
-        self.kept().push((key, made.clone()));
+        let shaders = self.shaders();
+        let made = self.make_of(prepared, style, &*shaders.modules)?;
+        let mut kept = self.kept();
+        // Others may have come meanwhile: then it will be made of those.
+        if kept.shaders.version == shaders.version {
+            kept.pipelines.push((key, made.clone()));
+        }
         Ok(made)
+    }
+
+    /// Makes pipelines of other shaders; those that nothing changes of stay what they are. Takes its time: for workers.
+    #[cfg(feature = "shaderc")]
+    pub fn remake(&self, wanted: &[(Prepared, Style)], from: &dyn Modules) -> Result<Made> {
+        let of = self.shaders().modules;
+        let mut made = Made::new();
+        for (prepared, style) in wanted {
+            let key = key(prepared, *style);
+            let names = Pipelines::modules(prepared, &style.options(&self.mould));
+            let same = |name: &String| of.fingerprint(name) == from.fingerprint(name);
+            let pipelines = match self.ready(&key).filter(|_| names.iter().all(same)) {
+                Some(ready) => ready,
+                None => self.make_of(prepared, *style, from)?,
+            };
+            made.push((key, pipelines));
+        }
+        Ok(made)
+    }
+
+    /// Goes over to other shaders, with the pipelines that have been made of them. Not while a frame is drawn.
+    #[cfg(feature = "shaderc")]
+    pub fn exchange(&self, modules: Arc<dyn Modules + Send + Sync>, pipelines: Made) {
+        let mut kept = self.kept();
+        let version = kept.shaders.version + 1;
+        *kept = Kept {
+            shaders: Shaders { version, modules },
+            pipelines,
+        };
+    }
+
+    fn make_of(
+        &self,
+        prepared: &Prepared,
+        style: Style,
+        from: &dyn Modules,
+    ) -> Result<Arc<Owned<Pipelines>>> {
+        let _span = tracing::debug_span!("pipelines").entered();
+        let options = style.options(&self.mould);
+        let (device, cache) = (self.device(), self.gpu.pipeline_cache());
+        let (raw, layout) = (device.raw(), &self.layout);
+        // SAFETY: all of one live device; the modules are ours, or what somebody makes of them to look at.
+        let made = unsafe { Pipelines::with_modules(raw, layout, cache, prepared, &options, from) };
+        // SAFETY: they were just made by this device.
+        Ok(Arc::new(unsafe { Owned::new(device, made?) }))
     }
 
     /// Writes what pipelines were made of, for the next start.
@@ -215,11 +293,32 @@ impl Context {
         }
     }
 
-    fn kept(&self) -> MutexGuard<'_, Vec<(Key, Arc<Owned<Pipelines>>)>> {
-        self.pipelines
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Prepares a model by a method, or by the one that draws its limit or comes near, with the plans of this run's database; and why those before that one
+/// refused.
+pub fn prepare(model: &Model, by: Option<&'static str>) -> Result<(Prepared, Vec<Error>)> {
+    let options = MethodOptions::default();
+    match by {
+        Some(name) => {
+            let prepared = method(name)?.prepare_with(model, options, database()?)?;
+            Ok((prepared, Vec::new()))
+        }
+        None => prepare_by_default_with(model, options, database()?),
+    }
+}
+
+fn key(prepared: &Prepared, style: Style) -> Key {
+    let shaders = prepared.passes.iter().map(|pass| pass.shader);
+    (shaders.collect(), style)
+}
+
+fn find(all: &Made, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
+    let found = all.iter().find(|(other, _)| other == key);
+    found.map(|(_, pipelines)| pipelines.clone())
 }
 
 /// The greatest level that a back-end draws.

@@ -232,7 +232,8 @@ pub struct History {
     topology: u64,
     /// Grows with each change.
     revision: u64,
-    saved: u64,
+    /// After how many steps it was as it is in a file; None when these steps have been left.
+    saved: Option<usize>,
 }
 
 impl History {
@@ -245,7 +246,7 @@ impl History {
             dragging: false,
             topology: 0,
             revision: 0,
-            saved: 0,
+            saved: Some(0),
         }
     }
 
@@ -271,18 +272,23 @@ impl History {
 
     /// Whether something was changed that is in no file.
     pub fn is_changed(&self) -> bool {
-        self.saved != self.revision
+        self.saved != Some(self.done.len())
     }
 
-    /// All is in a file now.
-    pub fn was_saved(&mut self) {
-        self.saved = self.revision;
+    /// All is in a file, if it is still as it was at a revision.
+    pub fn was_saved(&mut self, revision: u64) {
+        if self.revision == revision {
+            self.saved = Some(self.done.len());
+        }
     }
 
     /// Makes a change; while something is dragged, as a part of the last one if it is of the same things.
     pub fn change(&mut self, change: Change, dragging: bool) {
         self.make(&change);
         self.undone.clear();
+        if self.saved.is_some_and(|steps| steps > self.done.len()) {
+            self.saved = None;
+        }
         let continues = self.dragging && dragging;
         self.dragging = dragging;
         let absorbed = continues
@@ -292,6 +298,8 @@ impl History {
                 .is_some_and(|last| last.absorb(&change));
         if !absorbed {
             self.done.push(change);
+        } else if self.saved == Some(self.done.len()) {
+            self.saved = None;
         }
     }
 
@@ -379,6 +387,32 @@ mod tests {
         history.undo();
         let was = self::history();
         assert_eq!(history.draft().creases, was.draft().creases);
+    }
+
+    #[test]
+    fn what_is_undone_to_what_is_in_a_file_is_unchanged_and_another_way_there_is_not() {
+        let mut history = history();
+        let change = |history: &mut History, to| {
+            let change = crease(history, to);
+            history.change(change, false);
+        };
+        change(&mut history, 3.0);
+        change(&mut history, 4.0);
+        history.was_saved(history.revision());
+        assert!(!history.is_changed());
+        history.undo();
+        assert!(history.is_changed());
+        history.redo();
+        assert!(!history.is_changed());
+        history.undo();
+        history.undo();
+        change(&mut history, 5.0);
+        change(&mut history, 6.0);
+        assert!(history.is_changed());
+        let before = history.revision();
+        change(&mut history, 7.0);
+        history.was_saved(before);
+        assert!(history.is_changed(), "more was done while it was written");
     }
 
     #[test]

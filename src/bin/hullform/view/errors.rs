@@ -6,11 +6,11 @@ use hullform::Result;
 use hullform::gpu::Cut;
 use hullform::host::ColouredVertex;
 use hullform::mesh::{Model, Scheme};
-use hullform::method::{DepthTags, MethodOptions, method, prepare_by_default};
+use hullform::method::DepthTags;
 use hullform::subdivision::LimitSurface;
 use indicatif::ProgressBar;
 
-use super::context::{Context, Recipe, under_scheme};
+use super::context::{Context, Recipe, prepare, under_scheme};
 use super::draft::Draft;
 use super::probe::Boxes;
 use super::viewer::ErrorKind;
@@ -36,6 +36,8 @@ pub struct Subject {
     pub scheme: Option<Scheme>,
     /// How it is prepared.
     pub recipe: Recipe,
+    /// The version of the shaders.
+    pub shaders: u64,
     /// How it is cut.
     pub cut: Cut,
     /// The depths by which levels go, where they do.
@@ -70,12 +72,10 @@ pub fn measure(
     let mesh = draft.mesh()?;
     let scheme = subject.scheme.unwrap_or(mesh.options().scheme);
     let model = Model::new(under_scheme(mesh, scheme, triangulate)?);
-    let options = MethodOptions::default();
-    let prepared = match subject.recipe.method {
-        Some(name) => method(name)?.prepare(&model, options)?,
-        None => prepare_by_default(&model, options)?.0,
-    };
+    let (prepared, _) = prepare(&model, subject.recipe.method)?;
     let bench = drawing::blind(&context.gpu)?;
+    // SAFETY: the modules are ours, or what somebody makes of them to look at.
+    let bench = unsafe { bench.with_modules(context.shaders().modules) };
     let cutting = Cutting {
         cut: subject.cut,
         backend: subject.recipe.backend,

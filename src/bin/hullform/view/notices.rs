@@ -52,6 +52,11 @@ impl Notices {
         self.all.drain(..over);
     }
 
+    /// What has been read.
+    pub fn clear(&mut self) {
+        self.all.clear();
+    }
+
     /// What is to be seen now.
     pub fn seen(&mut self) -> &[Notice] {
         self.all

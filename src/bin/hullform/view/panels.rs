@@ -5,6 +5,7 @@ mod looks;
 mod readings;
 mod scene;
 mod sheet;
+mod unsaved;
 
 use egui::{Color32, Context, CornerRadius, Frame, Margin, RichText, Stroke, Ui};
 
@@ -23,6 +24,8 @@ pub struct Status<'a> {
     pub busy: Vec<String>,
     /// What is under the cursor.
     pub probe: Option<&'a super::probe::Found>,
+    /// What is wrong with the shaders' text.
+    pub shaders: Option<&'a str>,
     /// The scale of the map that is shown.
     pub scale: Option<super::errors::Legend>,
 }
@@ -61,7 +64,7 @@ pub fn dress(ctx: &Context) {
 /// Shows everything, and does what keys and mouse ask for.
 pub fn show(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
     viewer.places.clear();
-    if !ctx.wants_keyboard_input() {
+    if !ctx.wants_keyboard_input() && viewer.intent.is_none() {
         let commands: Vec<Command> =
             ctx.input(|input| input.events.iter().filter_map(of_event).collect());
         for command in commands {
@@ -82,6 +85,7 @@ pub fn show(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
     if viewer.sheet {
         sheet::show(ctx, viewer);
     }
+    unsaved::show(ctx, viewer);
 }
 
 fn side(ctx: &Context, name: &'static str, left: bool, contents: impl FnOnce(&mut Ui)) {
@@ -155,11 +159,9 @@ fn choice<T: PartialEq + Clone>(
 fn notices(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
     let left = if viewer.panels { WIDTH + 16.0 } else { 16.0 };
     let offset = egui::vec2(left, -14.0);
-    let errors: Vec<String> = viewer
-        .parts
-        .iter()
-        .filter_map(|part| part.error.clone())
-        .collect();
+    let parts = viewer.parts.iter();
+    let errors = parts.filter_map(|part| part.error.clone());
+    let errors: Vec<String> = errors.chain(status.shaders.map(String::from)).collect();
     let area = egui::Area::new("notices".into())
         .anchor(egui::Align2::LEFT_BOTTOM, offset)
         .interactable(false);

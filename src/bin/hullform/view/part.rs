@@ -14,6 +14,8 @@ use super::draft::{Change, History};
 pub struct Wanted {
     /// Counts loads, and changes that plans depend on.
     pub version: [u64; 2],
+    /// Counts changes of the shaders that fill caches.
+    pub filling: u64,
     /// The scheme, where another than the model's own.
     pub scheme: Option<Scheme>,
     /// A recipe a side.
@@ -95,10 +97,15 @@ impl Part {
         self.history.as_ref()
     }
 
-    /// Says that all is in a file.
-    pub fn was_saved(&mut self) {
+    /// Whether something was changed that is in no file.
+    pub fn is_changed(&self) -> bool {
+        self.history.as_ref().is_some_and(History::is_changed)
+    }
+
+    /// Says that all is in a file, if it is still as it was at a revision.
+    pub fn was_saved(&mut self, revision: u64) {
         if let Some(history) = &mut self.history {
-            history.was_saved();
+            history.was_saved(revision);
         }
     }
 
@@ -123,10 +130,16 @@ impl Part {
     }
 
     /// What is to be on the device; None before it is read.
-    pub fn wanted(&self, scheme: Option<Scheme>, recipes: Vec<Recipe>) -> Option<Wanted> {
+    pub fn wanted(
+        &self,
+        filling: u64,
+        scheme: Option<Scheme>,
+        recipes: Vec<Recipe>,
+    ) -> Option<Wanted> {
         let history = self.history.as_ref()?;
         Some(Wanted {
             version: [self.loads, history.topology()],
+            filling,
             scheme,
             recipes,
         })

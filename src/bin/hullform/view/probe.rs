@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 
 use super::errors::Measured;
+use super::piece::Piece;
 use crate::eye::{Eye, Lens};
 use crate::output::Surface;
 
@@ -110,6 +111,8 @@ pub struct Found {
     pub error: Option<f64>,
     /// Degrees between both normals.
     pub angle: Option<f64>,
+    /// By what it is evaluated; None where that is not on the device any more.
+    pub piece: Option<Piece>,
 }
 
 impl Measured {
@@ -172,6 +175,7 @@ impl Measured {
             normal,
             error: truth.as_ref().map(|truth| error(truth.position)),
             angle: truth.as_ref().and_then(|truth| angle(truth.normal())),
+            piece: None,
         }
     }
 }
@@ -183,7 +187,7 @@ impl Found {
         let or_none = |number: Option<f64>, words: &dyn Fn(f64) -> String| {
             number.map_or("–".to_string(), words)
         };
-        vec![
+        let mut facts = vec![
             ("face", self.face.to_string()),
             ("u, v", format!("{:.4}, {:.4}", self.uv[0], self.uv[1])),
             ("position", three(self.position)),
@@ -193,7 +197,9 @@ impl Found {
                 "normal error",
                 or_none(self.angle, &|a| format!("{a:.2e}°")),
             ),
-        ]
+        ];
+        facts.extend(self.piece.iter().flat_map(Piece::facts));
+        facts
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{DrawList, Fill, Pipelines, Residence, View, ring};
+use hullform::gpu::{Cut, DrawList, Fill, Pipelines, Residence, View, ring};
 use hullform::host::{
     ColouredTriangles, ColouredVertex, OffscreenTarget, Owned, Style, TimestampQuery,
 };
@@ -41,7 +41,7 @@ pub struct Staged {
 /// What lists depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Decision {
-    cut: hullform::gpu::Cut,
+    cut: Cut,
     tags: Option<(super::orbit::Orbit, f32, u64, [u32; 2])>,
 }
 
@@ -164,18 +164,34 @@ impl Stage {
         missing.into_iter().map(|(_, place)| place).collect()
     }
 
+    /// Whether something cannot be drawn, not even in another look, before pipelines that are being made are there.
+    pub fn waits(&self, viewer: &Viewer, context: &Context, made: impl Fn(&Key) -> bool) -> bool {
+        let mut all = self.parts.iter().flat_map(|part| &part.sides);
+        all.any(|drawn| {
+            let keys = Stage::fills(viewer).into_iter();
+            let mut keys = keys.map(|fill| drawn.key(style(drawn, viewer, fill)));
+            keys.any(|key| made(&key) && context.ready_or_like(&key).is_none())
+        })
+    }
+
     /// Brings what has changed to where the next frame finds it: places, levels, lines. Nothing is drawn at this time.
     ///
     /// # Errors
     /// What the library refuses, of a part whose number comes along.
-    pub fn decide(&mut self, viewer: &Viewer, overlay: &Overlay, context: &Context) -> Result<()> {
+    pub fn decide(
+        &mut self,
+        viewer: &Viewer,
+        cut: Cut,
+        overlay: &Overlay,
+        context: &Context,
+    ) -> Result<()> {
         for staged in &mut self.parts {
             let number = staged.number;
             let Some(part) = viewer.parts.iter().find(|part| part.number() == number) else {
                 continue;
             };
             staged.place(part)?;
-            staged.decide(viewer, part, context)?;
+            staged.decide(viewer, cut, part, context)?;
         }
         let maps = self.maps.iter_mut().zip(&overlay.maps);
         // SAFETY: nothing is drawn at this time, which the caller has asked the canvas.
@@ -196,6 +212,7 @@ impl Stage {
         context: &Context,
     ) -> Result<Cost> {
         let started = Instant::now();
+        let _span = tracing::debug_span!("record").entered();
         let mut cost = Cost::default();
         let device = context.device().raw();
         let sides = Stage::sides(viewer);
@@ -240,7 +257,7 @@ impl Stage {
 }
 
 /// How surfaces are drawn.
-fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
+pub fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
     Style {
         cull: viewer.cutting.cull.mode(),
         ..Style::new(drawn.surface.options(), viewer.cutting.spacing, fill)
@@ -310,8 +327,7 @@ impl Staged {
     }
 
     /// Decides levels anew, where what they depend on has changed.
-    fn decide(&mut self, viewer: &Viewer, part: &Part, context: &Context) -> Result<()> {
-        let cut = viewer.cutting.cut();
+    fn decide(&mut self, viewer: &Viewer, cut: Cut, part: &Part, context: &Context) -> Result<()> {
         let size = [viewer.area.width, viewer.area.height];
         let tags = |pixels| (viewer.cutting_orbit(), pixels, part.moves(), size);
         let decision = Decision {
@@ -322,7 +338,7 @@ impl Staged {
         if decided && self.sides.iter().all(|drawn| drawn.list.is_some()) {
             return Ok(());
         }
-        let tags = self.tags(viewer, part)?;
+        let tags = self.tags(viewer, cut.level, part)?;
         let device = context.device();
         for drawn in &mut self.sides {
             let list = drawn.surface.draw_list(cut, tags.as_ref())?;
@@ -337,7 +353,7 @@ impl Staged {
     }
 
     /// A depth for each control vertex, by the camera that cuts.
-    fn tags(&self, viewer: &Viewer, part: &Part) -> Result<Option<DepthTags>> {
+    fn tags(&self, viewer: &Viewer, level: f32, part: &Part) -> Result<Option<DepthTags>> {
         let Some(adaptive) = viewer.cutting.adaptive() else {
             return Ok(None);
         };
@@ -359,7 +375,6 @@ impl Staged {
             false => self.model.positions(),
         };
         let outline = &drawn.surface.prepared().outline;
-        let level = viewer.cutting.cut().level;
         adaptive.tags(outline, &places, level, seen).map(Some)
     }
 }
@@ -405,7 +420,7 @@ impl Drawn {
         cost.vertices += self.vertices;
         for (round, fill) in (0..).zip(Stage::fills(viewer)) {
             let key = self.key(style(self, viewer, fill));
-            let Some(pipelines) = context.ready(&key) else {
+            let Some(pipelines) = context.ready_or_like(&key) else {
                 continue;
             };
             // SAFETY: this function's contract.

@@ -141,6 +141,10 @@ pub struct Viewer {
     pub places: BTreeMap<&'static str, egui::Rect>,
     /// What is wanted of the program.
     pub wishes: Vec<Wish>,
+    /// What waits for a word about changes that are in no file.
+    pub intent: Option<Intent>,
+    /// Whether it is done once these are.
+    pub saving: bool,
     /// Whether the camera is to show everything once it is known.
     pub fit_pending: bool,
     /// Files that were opened, the latest first.
@@ -159,10 +163,23 @@ pub enum Wish {
     CopyCommand,
     /// Saves the model with its changes.
     Save,
+    /// Saves all models that were changed.
+    SaveAll,
     /// Looks for what is under the cursor, at a place of the scene in -1..1, y up.
     Probe([f64; 2]),
     /// Ends.
     Quit,
+}
+
+/// What would lose changes that are in no file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Intent {
+    /// The window goes.
+    Quit,
+    /// Other models come.
+    Open(Vec<Option<PathBuf>>),
+    /// The files are read again.
+    Reload,
 }
 
 impl Default for Viewer {
@@ -205,6 +222,8 @@ impl Default for Viewer {
             area: Area::default(),
             places: BTreeMap::new(),
             wishes: Vec::new(),
+            intent: None,
+            saving: false,
             fit_pending: true,
             recent: Vec::new(),
             number: 0,
@@ -227,6 +246,35 @@ impl Viewer {
             self.parts.push(Part::new(self.number, path));
         }
         self.fit_pending = true;
+    }
+
+    /// Does what would lose changes; where there are some, once there is a word about them.
+    pub fn intend(&mut self, intent: Intent) {
+        self.saving = false;
+        match self.parts.iter().any(Part::is_changed) {
+            true => self.intent = Some(intent),
+            false => self.perform(intent),
+        }
+    }
+
+    /// Does it, whatever is lost.
+    pub fn perform(&mut self, intent: Intent) {
+        self.intent = None;
+        match intent {
+            Intent::Quit => self.wishes.push(Wish::Quit),
+            Intent::Open(paths) => self.open(paths),
+            Intent::Reload => self.parts.iter_mut().for_each(|part| part.unread = true),
+        }
+    }
+
+    /// Does what waited for changes to be saved, once they are.
+    pub fn saved(&mut self) {
+        if self.saving && !self.parts.iter().any(Part::is_changed) {
+            self.saving = false;
+            if let Some(intent) = self.intent.take() {
+                self.perform(intent);
+            }
+        }
     }
 
     /// How each side is prepared.

@@ -16,6 +16,8 @@ pub struct Watch {
     /// What is told of; other files in their folders may change as they like.
     files: Arc<Mutex<BTreeSet<PathBuf>>>,
     folders: BTreeSet<PathBuf>,
+    /// Folders of which everything is told.
+    whole: Arc<Mutex<BTreeSet<PathBuf>>>,
 }
 
 impl Watch {
@@ -23,12 +25,18 @@ impl Watch {
     pub fn new(wake: Wake) -> Watch {
         let (sender, changed) = channel();
         let files = Arc::<Mutex<BTreeSet<PathBuf>>>::default();
-        let watched = files.clone();
+        let whole = Arc::<Mutex<BTreeSet<PathBuf>>>::default();
+        let (watched, inside) = (files.clone(), whole.clone());
         let told = move |event: notify::Result<notify::Event>| {
             let Ok(event) = event else { return };
             let written = event.kind.is_modify() || event.kind.is_create();
             let places = event.paths.iter().filter_map(|path| place(path));
-            for place in places.filter(|place| written && files_of(&watched).contains(place)) {
+            let told = |place: &PathBuf| {
+                let within = |folder| place.starts_with(folder);
+                written
+                    && (files_of(&watched).contains(place) || files_of(&inside).iter().any(within))
+            };
+            for place in places.filter(told) {
                 // Nobody listens any more once the window has gone.
                 let _ = sender.send(place);
                 wake();
@@ -40,6 +48,16 @@ impl Watch {
             changed,
             files,
             folders: BTreeSet::new(),
+            whole,
+        }
+    }
+
+    /// Watches everything in a folder, by its real name.
+    pub fn look_into(&mut self, folder: &Path) {
+        if let Some(watcher) = &mut self.watcher
+            && watcher.watch(folder, RecursiveMode::Recursive).is_ok()
+        {
+            files_of(&self.whole).insert(folder.into());
         }
     }
 
@@ -109,5 +127,15 @@ mod tests {
         std::fs::write(&other, "3").expect("it is written");
         std::fs::rename(&other, &file).expect("it is replaced");
         assert!(told());
+        let inside = folder.path().join("lib");
+        std::fs::create_dir(&inside).expect("it is made");
+        watch.look_into(&folder.path().canonicalize().expect("it is there"));
+        let file = inside.join("a.glsl");
+        std::fs::write(&file, "4").expect("it is written");
+        let started = Instant::now();
+        while !watch.changed().contains(&place(&file).expect("a place")) {
+            assert!(started.elapsed() < Duration::from_secs(20));
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 }

@@ -18,6 +18,7 @@ impl Viewer {
             }
             Command::Unpick => {
                 self.selection.clear();
+                self.notices.clear();
                 self.sheet = false;
             }
             Command::Undo | Command::Redo => {

@@ -7,7 +7,7 @@ use hullform::tessellation::Spacing;
 use super::super::command::{BACKENDS, Command, SCHEMES, SHADINGS, methods};
 use super::super::context::greatest_level;
 use super::super::orbit::Preset;
-use super::super::viewer::{Beside, Cull, ErrorKind, Viewer};
+use super::super::viewer::{Beside, Cull, ErrorKind, Intent, Viewer};
 use super::{choice, heading, row};
 
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
@@ -52,7 +52,7 @@ fn files(ui: &mut Ui, viewer: &mut Viewer) {
             for path in recent {
                 let shown = viewer.parts.len() == 1 && viewer.parts[0].path() == Some(&path);
                 if ui.selectable_label(shown, path.to_string_lossy()).clicked() {
-                    viewer.open([Some(path)]);
+                    viewer.intend(Intent::Open(vec![Some(path)]));
                 }
             }
         });

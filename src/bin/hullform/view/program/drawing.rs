@@ -26,6 +26,16 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
+    /// Whether another differs by nothing but edits and what is picked.
+    pub fn is_edit_of(&self, other: &Drawing) -> bool {
+        let edited = Drawing {
+            selection: self.selection.clone(),
+            parts: self.parts.clone(),
+            ..other.clone()
+        };
+        edited == *self && other != self
+    }
+
     /// What the colours of its map mean.
     pub fn legend(&self) -> Option<&Legend> {
         self.legend.as_ref()

@@ -26,6 +26,7 @@ impl Program {
             self.build(place)?;
         }
         self.pipe()?;
+        self.compile()?;
         self.measure()
     }
 
@@ -61,7 +62,8 @@ impl Program {
         let part = &self.viewer.parts[place];
         let number = part.number();
         let recipes = self.viewer.recipes();
-        let Some(wanted) = part.wanted(self.viewer.cutting.scheme, recipes) else {
+        let Some(wanted) = part.wanted(self.live.filling, self.viewer.cutting.scheme, recipes)
+        else {
             return Ok(());
         };
         let same = |staged: &&Staged| staged.number == number && staged.wanted == wanted;
@@ -82,9 +84,11 @@ impl Program {
         let (how, styles) = (self.shape.triangulate, self.styles());
         let asked = wanted.clone();
         let work = move || {
+            let span = tracing::debug_span!("connect").entered();
             let mesh = draft.mesh()?;
             let scheme = asked.scheme.unwrap_or(mesh.options().scheme);
             let model = Model::new(under_scheme(mesh, scheme, how)?);
+            drop(span);
             let place = |&recipe| context.place(&model, recipe);
             let sides = asked
                 .recipes
@@ -147,6 +151,7 @@ impl Program {
             moves: part.moves(),
             scheme: staged.wanted.scheme,
             recipe: *staged.wanted.recipes.get(side)?,
+            shaders: self.context.shaders().version,
             cut: self.viewer.cutting.cut(),
             tags: None,
         })

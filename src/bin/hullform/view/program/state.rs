@@ -75,6 +75,7 @@ impl Program {
         let (orbit, area) = (viewer.orbit, viewer.area);
         let memory: u64 = self.readings.memory.iter().map(|(_, size)| size).sum();
         json!({
+            "seconds": self.began.elapsed().as_secs_f64(),
             "frames": self.readings.frames[0],
             "scenes": self.readings.frames[1],
             "settled": self.is_settled(),
@@ -122,7 +123,11 @@ impl Program {
             "probe": self.found.as_ref().map(|found| json!({
                 "face": found.face, "uv": found.uv, "position": found.position.to_array(),
                 "normal": found.normal.to_array(), "error": found.error, "angle": found.angle,
+                "facts": found.facts().into_iter().map(|(name, words)| (name.to_string(), json!(words)))
+                    .collect::<serde_json::Map<String, Value>>(),
             })),
+            "asked": viewer.intent.is_some(),
+            "shaders": { "version": self.context.shaders().version, "error": self.live.error },
             "vertices": self.readings.cost.vertices,
             "memory": memory,
         })
@@ -175,10 +180,11 @@ impl Program {
                 "name": part.name(),
                 "methods": methods,
                 "version": staged.map(|staged| staged.wanted.version),
+                "wanted": history.map(|history| history.topology()),
                 "steps": history.map(|history| history.steps()),
                 "changed": history.map(|history| history.is_changed()),
                 "creases": history.map(|history| {
-                    history.draft().creases.values().map(|&s| f64::from(s)).sum::<f64>()
+                    history.draft().creases.values().map(|&s| f64::from(s)).fold(0.0, |sum, s| sum + s)
                 }),
                 "holes": history.map(|history| history.draft().holes.len()),
                 "error": part.error,

@@ -1,0 +1,166 @@
+//! What workers have brought, and files that have changed.
+
+use std::sync::Arc;
+
+use hullform::mesh::{ControlMesh, Model};
+use hullform::{Error, Result};
+
+use super::{Done, Program};
+use crate::view::context::Drawn;
+use crate::view::part::Wanted;
+use crate::view::stage::Staged;
+use crate::view::watch;
+
+impl Program {
+    /// Takes what workers have brought, when nothing is drawn; whether there was anything.
+    pub fn take(&mut self) -> Result<bool> {
+        self.take_changes();
+        let done = self.workers.done();
+        let any = !done.is_empty();
+        for done in done {
+            self.take_one(done)?;
+        }
+        Ok(any)
+    }
+
+    /// Has models read again whose files have changed.
+    fn take_changes(&mut self) {
+        let changed = self.watch.changed();
+        for part in &mut self.viewer.parts {
+            let place = part.file().and_then(watch::place);
+            if place.is_none_or(|place| !changed.contains(&place)) {
+                continue;
+            }
+            match part.is_changed() {
+                false => part.unread = true,
+                true => self.viewer.notices.tell(format!(
+                    "{} has changed on the disk; F5 reads it, without what was changed here",
+                    part.name()
+                )),
+            }
+        }
+        if let Some(folder) = &self.live.folder {
+            self.live.due |= changed.iter().any(|place| place.starts_with(folder));
+        }
+        let files = self.viewer.parts.iter().filter_map(|part| part.file());
+        self.watch.look_after(files);
+    }
+
+    fn take_one(&mut self, done: Done) -> Result<()> {
+        match done {
+            Done::Read(number, result) => self.take_mesh(number, result),
+            Done::Built(number, wanted, result) => return self.take_built(number, wanted, result),
+            Done::Piped(key, result) => {
+                self.running.piped.retain(|other| *other != key);
+                if let Err(error) = result {
+                    self.failed.piped.push(key);
+                    return self.fails(error);
+                }
+            }
+            Done::Measured(subject, result) => {
+                self.running.measured = None;
+                match result {
+                    Ok(measured) => {
+                        self.kept.insert(0, measured);
+                        self.kept.truncate(6);
+                    }
+                    Err(error) => {
+                        self.failed.measured.push(*subject);
+                        return self.fails(error);
+                    }
+                }
+            }
+            Done::Compiled(result) => return self.take_compiled(result),
+            Done::Compared(result) => {
+                self.running.compared = None;
+                result.or_else(|error| self.fails(error))?;
+            }
+            Done::Written(written, result) => return self.take_written(&written, result),
+            Done::Saved(result) => {
+                self.running.saved -= 1;
+                match result {
+                    Ok(words) => self.viewer.notices.tell(words),
+                    Err(error) => return self.fails(error),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What went wrong is told; a device that was lost ends the work with it.
+    pub(super) fn fails(&mut self, error: Error) -> Result<()> {
+        if error.is_of_device() {
+            return Err(error);
+        }
+        let error = crate::refused::in_words_of_options(error);
+        self.viewer.notices.warn(error.to_string());
+        Ok(())
+    }
+
+    fn take_mesh(&mut self, number: u64, result: Result<ControlMesh>) {
+        self.running.read.retain(|other| *other != number);
+        let Some(part) = self
+            .viewer
+            .parts
+            .iter_mut()
+            .find(|part| part.number() == number)
+        else {
+            return;
+        };
+        match result {
+            Ok(mesh) => {
+                part.loaded(mesh);
+                if self.viewer.selection.part() == Some(number) {
+                    self.viewer.selection.clear();
+                }
+                let unread = self
+                    .viewer
+                    .parts
+                    .iter()
+                    .any(|part| part.history().is_none());
+                if self.viewer.fit_pending && !unread {
+                    self.viewer.fit();
+                }
+            }
+            Err(error) => part.error = Some(error.to_string()),
+        }
+    }
+
+    fn take_built(
+        &mut self,
+        number: u64,
+        wanted: Wanted,
+        result: Result<(Arc<Model>, Vec<Drawn>)>,
+    ) -> Result<()> {
+        self.running.built.retain(|(other, _)| *other != number);
+        let parts = &mut self.viewer.parts;
+        let Some(part) = parts.iter_mut().find(|part| part.number() == number) else {
+            return Ok(());
+        };
+        match result {
+            Ok((model, sides)) => {
+                part.error = None;
+                part.model = Some(model.clone());
+                for refusal in sides.iter().flat_map(|drawn| &drawn.refusals) {
+                    self.viewer.notices.warn(refusal.clone());
+                }
+                self.stage.parts.retain(|staged| staged.number != number);
+                self.stage
+                    .parts
+                    .push(Staged::new(number, model, wanted, sides));
+                self.stage.parts.sort_by_key(|staged| staged.number);
+                self.fresh = true;
+                Ok(())
+            }
+            Err(error) if error.is_of_device() => Err(error),
+            Err(error) => {
+                let error = crate::refused::in_words_of_options(error);
+                let error = error.in_file(&part.name()).to_string();
+                part.error = Some(error.clone());
+                self.failed.built.push((number, wanted));
+                self.viewer.notices.warn(error);
+                Ok(())
+            }
+        }
+    }
+}

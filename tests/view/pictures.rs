@@ -1,0 +1,126 @@
+//! A screenshot is what `hullform render` draws by the command line that can be copied: over methods, back-ends, colours and cameras.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+
+use hullform::method::METHODS;
+use serde_json::Value;
+
+use super::display;
+use crate::window::{Picture, Session, keys, read_png};
+
+/// At most so much differs on average, in steps of 255: `render` has finer edges, and draws lines half as wide.
+const FINER: f64 = 0.9;
+const FINER_LINES: f64 = 4.5;
+
+/// What has lines whose width goes by pixels, or squares with sharp sides.
+const LINED: [&str; 4] = ["node kinds", "levels", "tree depth", "checker"];
+
+/// What is pressed from one picture to the next, so that in the end each choice has met many others; one for each kind of faces. Without wires, which `render` draws half as wide.
+const WALKS: [(&str, &str); 3] = [
+    ("builtin:ngons", "c mb c o bc brc lc zc ac"),
+    ("builtin:cube", "mmmc bc rc lc mb c kc mb oc mb c mzc"),
+    ("builtin:hull", "MM mmc bc bc oc rc c"),
+];
+
+#[test]
+fn every_method_back_end_colour_and_camera_is_as_render_draws_it() {
+    let Some(display) = display() else { return };
+    let mut seen: [BTreeSet<String>; 5] = Default::default();
+    let mut pictures = 0;
+    for (model, walk) in WALKS {
+        let folder = tempfile::tempdir().expect("a folder");
+        let options = ["--size", "560x420", model];
+        let session = Session::open_with(&display, folder.path(), &options, |command| {
+            command.arg("--validation");
+        });
+        session.hand.key(keys::TAB, &[]);
+        session.until("panels have gone", |state| state["panels"] == false);
+        press(&session, 'f');
+        for step in walk.split(' ') {
+            step.chars().for_each(|sign| press(&session, sign));
+            if let Some(words) = compared(&session, &mut seen) {
+                assert!(words.is_empty(), "{model}, after {step}: {words}");
+                pictures += 1;
+            }
+        }
+        let state = session.state();
+        assert_eq!(state["validation"], 0, "{state:#}");
+        session.quit();
+        let (code, words) = session.end();
+        assert_eq!(code, Some(0), "{words}");
+    }
+    println!("{pictures} pictures");
+    let counts = seen.each_ref().map(BTreeSet::len);
+    let [methods, ..] = counts;
+    assert!(
+        methods == METHODS.len() && counts[1..] == [3, 9, 2, 2],
+        "{seen:?}"
+    );
+}
+
+/// Presses a key, and waits until it has done what it does.
+fn press(session: &Session, sign: char) {
+    let shown = |state: &Value| ["look", "cut", "camera", "frozen"].map(|of| state[of].clone());
+    let before = shown(&session.state());
+    session.press(sign);
+    session.until("something changes", |state| shown(state) != before);
+}
+
+/// Waits for the picture, and compares it with what its command line draws: what is wrong, in words. None where the model is refused.
+fn compared(session: &Session, seen: &mut [BTreeSet<String>; 5]) -> Option<String> {
+    // Words would stand over it.
+    session.hand.key(keys::ESCAPE, &[]);
+    session.until("no words", |state| state["notice"].is_null());
+    session.hand.key(keys::F12, &[]);
+    let file = session.file("hullform-1.png");
+    let picture = read_png(&file);
+    std::fs::remove_file(file).expect("it is removed");
+    let frames = session.state()["frames"].as_u64();
+    session.control('c');
+    let state = session.until("copied", |state| {
+        state["frames"].as_u64() > frames && state["copied"].is_string()
+    });
+    if state["models"][0]["error"].is_string() {
+        return None;
+    }
+    let (cut, look) = (&state["cut"], &state["look"]);
+    let facts = [
+        &state["models"][0]["methods"][0],
+        &cut["backend"],
+        &look["shading"],
+        &cut["residence"],
+        &state["camera"]["orthographic"],
+    ];
+    for (seen, fact) in seen.iter_mut().zip(facts) {
+        seen.insert(fact.to_string());
+    }
+    let line = state["copied"].as_str().expect("a command line");
+    let drawn = draw(session, line);
+    let apart = picture.difference(&drawn, false);
+    let is_lined = LINED.iter().any(|lined| look["shading"] == *lined);
+    let most = if is_lined { FINER_LINES } else { FINER };
+    println!("{apart:.2} {line}");
+    Some(match apart <= most {
+        true => String::new(),
+        false => format!("{apart} by {line}"),
+    })
+}
+
+fn draw(session: &Session, line: &str) -> Picture {
+    let program = env!("CARGO_BIN_EXE_hullform");
+    let line = line.replacen("hullform ", &format!("{program} "), 1);
+    let done = Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(&session.folder)
+        .env("XDG_CACHE_HOME", session.folder.join("home/cache"))
+        .output();
+    let done = done.expect("a shell");
+    assert!(
+        done.status.success(),
+        "{line}: {}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    read_png(&session.folder.join(Path::new("hullform.png")))
+}

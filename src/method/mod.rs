@@ -47,6 +47,7 @@
 
 mod bft;
 mod cached;
+mod deciding;
 mod displacement;
 mod flat;
 mod options;
@@ -76,6 +77,8 @@ use crate::tessellation::Domain;
 use origin::Origin;
 
 pub use cached::{CachedPass, CachedPoints, Jobs};
+#[cfg(feature = "vulkan")]
+pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;

@@ -70,6 +70,18 @@ impl Outline {
         &self.edges
     }
 
+    /// The control vertices of a side: of an edge its ends, of a face all in turn. None where there is no such side.
+    pub fn side(&self, side: u32) -> Option<&[u32]> {
+        let side = side as usize;
+        if let Some(ends) = self.edges.get(side) {
+            return Some(ends);
+        }
+        let face = side - self.edges.len();
+        let end = *self.face_ends.get(face)?;
+        let start = face.checked_sub(1).map_or(0, |before| self.face_ends[before]);
+        Some(&self.face_vertices[start..end])
+    }
+
     /// The vertices of each face.
     fn faces(&self) -> impl Iterator<Item = &[u32]> {
         let mut start = 0;

@@ -26,6 +26,8 @@ pub struct Pass {
     /// The side of the [`Outline`](crate::method::Outline) to which each patch's edge from corner i to corner i + 1 belongs; a triangle's last one twice. Filled in by
     /// [`Method::prepare`](crate::method::Method::prepare).
     pub sides: Vec<[u32; 4]>,
+    /// How many of each patch's control vertices, the first, have the surface in their convex hull; empty where none are known to.
+    pub hulls: Vec<u32>,
     /// Texture coordinates of each patch's four corners.
     pub texture: Vec<[[f32; 2]; 4]>,
     /// The method's own tables, `TABLES` at most.
@@ -61,6 +63,7 @@ impl Pass {
             patches: Vec::new(),
             controls: Vec::new(),
             sides: Vec::new(),
+            hulls: Vec::new(),
             texture: Vec::new(),
             tables: Vec::new(),
             scratch_points: Vec::new(),

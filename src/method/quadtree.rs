@@ -332,6 +332,8 @@ fn add<'a>(
     let mut patch = patches::patch(model, part, turn);
     patch.controls = pass.controls.len() as u32;
     pass.controls.extend_from_slice(vertices);
+    // Masks of Catmull-Clark have no negative weights.
+    pass.hulls.push(vertices.len() as u32);
     pass.texture.push(patches::texture(model, part, turn));
     pass.patches.push(patch);
     pass.patches.last_mut().expect("it was just pushed")

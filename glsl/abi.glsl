@@ -176,10 +176,20 @@ const uint FRAME_PARITY = 8u;
 const uint FRAME_ADAPTIVE = 16u;
 // Frame flag: the evaluation shader counts the vertices of each patch: in the `patch_number` of that patch's `Captured` record.
 const uint FRAME_COUNT = 32u;
+// Frame flag: patches have levels of their own in each view, as the device decided.
+const uint FRAME_DECIDED = 64u;
 // Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
 const uint FRAME_SEGMENTS_SHIFT = 8u;
 // Frame flag: views an instance, 1 but with multiview; six bits.
 const uint FRAME_EYES_SHIFT = 16u;
+// Flag of a `Decision`: by the distance from the eye. `FRAME_FRACTIONAL_EVEN` and the views an instance stand there as in a frame.
+const uint DECIDE_DISTANCE = 2u;
+// Flag of a `Decision`: by what is seen of edges.
+const uint DECIDE_SCREEN = 4u;
+// Flag of a `Decision`: patches outside of the picture are not drawn.
+const uint DECIDE_FRUSTUM = 8u;
+// Invocations of a workgroup of the shader that decides.
+const uint DECIDE_INVOCATIONS = 64u;
 // The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
 const uint PATTERN_SHIFT = 7u;
 // Rows of a patch's lattice that the geometry shader can make: one an invocation.
@@ -270,6 +280,31 @@ struct Ends {
     uint levels[11][5];
 };
 
+// By what a patch's levels are decided.
+struct PatchSides {
+    // Where, in a list of lists, the control vertices of the side stand to which each of its edges belongs, behind their number: two of an edge of the mesh;
+    // all of a face for what lies within it.
+    uint sides[4];
+    // So many of its control vertices, the first, have the surface in their convex hull; 0 where none are known to.
+    uint hull;
+};
+
+// What is decided of all patches in each of some views; push constants.
+struct Decision {
+    // The first view that is decided for.
+    uint view;
+    // The first view that is decided by, another where a frozen one is looked at.
+    uint seen;
+    // `DECIDE_...` flags.
+    uint flags;
+    // By distance: up to where the level is full, in local units. By what is seen: pixels of a segment.
+    float measure;
+    // The greatest level.
+    float level;
+    // The picture in pixels.
+    vec2 size;
+};
+
 // A point that is computed from control vertices.
 struct Point {
     // Position in local units.
@@ -353,8 +388,10 @@ struct Bases {
     // Texture coordinates, four a patch.
     uint texture;
     // The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
-    // and the jobs that compute points.
-    uint own[11];
+    // and the jobs that compute points; behind these, where the device decides, `PatchSides` and the lists that these point into.
+    uint own[13];
+    // How many patches there are.
+    uint patches;
 };
 
 // What a surface is seen with.

@@ -50,7 +50,7 @@ void emit(Patch record, Levels levels, uint n, uvec2 at) {
 
 void main() {
     Patch record = patch_record(in_patch[0]);
-    Levels levels = patch_levels(in_patch[0], record);
+    Levels levels = patch_levels(in_patch[0], in_view[0], record);
     uint n = uint(greatest_level(levels));
     uint row = uint(gl_InvocationID);
     if (row >= n) return;

@@ -23,8 +23,9 @@ layout(location = 3) patch out uint out_view;
 void main() {
     uint number = in_patch[0];
     Patch record = patch_record(number);
-    Levels levels = patch_levels(number, record);
-    bool drawn = number < frame.end_patch;
+    Levels levels = patch_levels(number, in_view[0], record);
+    // A patch that is decided not to be drawn has no level.
+    bool drawn = number < frame.end_patch && levels.inside > 0.0;
 #ifdef SCRATCH_RING
     uint level = required_level(levels);
     uint count = drawn ? scratch_points(record, level) : 0u;

@@ -34,6 +34,6 @@ layout(location = 3) patch in uint in_view;
 
 void main() {
     Patch record = patch_record(in_patch);
-    vec2 uv = shared_coordinates(record, patch_levels(in_patch, record), gl_TessCoord);
+    vec2 uv = shared_coordinates(record, patch_levels(in_patch, in_view, record), gl_TessCoord);
     write_vertex(record, in_patch, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));
 }

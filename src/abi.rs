@@ -297,10 +297,21 @@ constants! {
     FRAME_ADAPTIVE = 16;
     /// Frame flag: the evaluation shader counts the vertices of each patch: in the `patch_number` of that patch's `Captured` record.
     FRAME_COUNT = 32;
+    /// Frame flag: patches have levels of their own in each view, as the device decided.
+    FRAME_DECIDED = 64;
     /// Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
     FRAME_SEGMENTS_SHIFT = 8;
     /// Frame flag: views an instance, 1 but with multiview; six bits.
     FRAME_EYES_SHIFT = 16;
+
+    /// Flag of a `Decision`: by the distance from the eye. `FRAME_FRACTIONAL_EVEN` and the views an instance stand there as in a frame.
+    DECIDE_DISTANCE = 2;
+    /// Flag of a `Decision`: by what is seen of edges.
+    DECIDE_SCREEN = 4;
+    /// Flag of a `Decision`: patches outside of the picture are not drawn.
+    DECIDE_FRUSTUM = 8;
+    /// Invocations of a workgroup of the shader that decides.
+    DECIDE_INVOCATIONS = 64;
 
     /// The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
     PATTERN_SHIFT = 7;
@@ -396,6 +407,31 @@ structs! {
         levels: [[u32; 5]; 11],
     }
 
+    /// By what a patch's levels are decided.
+    PatchSides {
+        /// Where, in a list of lists, the control vertices of the side stand to which each of its edges belongs, behind their number: two of an edge of the mesh;
+        /// all of a face for what lies within it.
+        sides: [u32; 4],
+        /// So many of its control vertices, the first, have the surface in their convex hull; 0 where none are known to.
+        hull: u32,
+    }
+
+    /// What is decided of all patches in each of some views; push constants.
+    Decision {
+        /// The first view that is decided for.
+        view: u32,
+        /// The first view that is decided by, another where a frozen one is looked at.
+        seen: u32,
+        /// `DECIDE_...` flags.
+        flags: u32,
+        /// By distance: up to where the level is full, in local units. By what is seen: pixels of a segment.
+        measure: f32,
+        /// The greatest level.
+        level: f32,
+        /// The picture in pixels.
+        size: [f32; 2],
+    }
+
     /// A point that is computed from control vertices.
     Point {
         /// Position in local units.
@@ -479,8 +515,10 @@ structs! {
         /// Texture coordinates, four a patch.
         texture: u32,
         /// The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
-        /// and the jobs that compute points.
-        own: [u32; 11],
+        /// and the jobs that compute points; behind these, where the device decides, `PatchSides` and the lists that these point into.
+        own: [u32; 13],
+        /// How many patches there are.
+        patches: u32,
     }
 
     /// What a surface is seen with.

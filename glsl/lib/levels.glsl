@@ -10,13 +10,14 @@ struct Levels {
     float inside;
 };
 
-// The levels that the host gives the patch, or else those of a patch whose quad has the frame's level.
+// The levels that the host gives the patch, or the device in this view; or else those of a patch whose quad has the frame's level.
 //
 // Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge, so that both have a vertex in the middle and all
 // vertices line up: 2k and k with equal spacing, 4k and 2k with fractional-even (Brainerd et al. 2016, section 7.2).
-Levels patch_levels(uint number, Patch record) {
-    if ((frame.flags & FRAME_ADAPTIVE) != 0u) {
-        PatchDraw draw = draws[min(number, frame.end_patch - 1u)];
+Levels patch_levels(uint number, uint view, Patch record) {
+    if ((frame.flags & (FRAME_ADAPTIVE | FRAME_DECIDED)) != 0u) {
+        uint first = (frame.flags & FRAME_DECIDED) != 0u ? view * bases.patches : 0u;
+        PatchDraw draw = draws[first + min(number, frame.end_patch - 1u)];
         return Levels(draw.edges, draw.inside);
     }
     float level = clamp(frame.level, 1.0, 64.0);

@@ -104,6 +104,21 @@ pub enum Misuse {
         "a draw list, pose or frame slot was made for something else that was prepared, or for other options"
     )]
     OtherSurface,
+    /// What only goes with decisions of the host.
+    #[error("the device decides about patches: that does not go together with {what}")]
+    DecidedByDevice {
+        /// What was asked for as well.
+        what: &'static str,
+    },
+    /// The device decides about patches, and has not yet for the views that are drawn, at this list's cut.
+    #[error("the device has not decided about all views that are drawn: cmd_decide comes behind cmd_prepare, with this draw list")]
+    NotDecided,
+    /// Something that a decision goes by is not greater than 0.
+    #[error("a decision goes by {given}, and has to go by something greater than 0")]
+    Measure {
+        /// What was given.
+        given: f32,
+    },
     /// The draw list needs what the host decides about patches, and another list's is on the device, or none.
     #[error("what the host decides about this draw list's patches was not written last")]
     NotWritten,

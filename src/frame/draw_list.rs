@@ -9,7 +9,7 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
-use crate::frame::{Backend, Cut, Draw, Residence, SurfaceOptions};
+use crate::frame::{Backend, Cut, Decides, Draw, Residence, SurfaceOptions};
 use crate::method::{DepthTags, Pass, Prepared};
 use crate::tessellation::{
     Levels, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
@@ -56,6 +56,10 @@ impl DrawList {
         let bounds = options.bounds(instance_vertices);
         let runs = batches(prepared, cut, bounds)?;
         let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
+        if tags.is_some() && options.decides == Decides::Device {
+            let what = "depth tags";
+            return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
+        }
         let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
         let mut list = DrawList {
             number: NUMBER.fetch_add(1, Ordering::Relaxed),

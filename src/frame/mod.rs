@@ -6,6 +6,7 @@
 mod backend;
 mod batches;
 mod cut;
+mod decision;
 mod draw;
 mod draw_list;
 mod options;
@@ -15,9 +16,10 @@ mod tessellated;
 
 pub use backend::Backend;
 pub use cut::Cut;
+pub use decision::{Decision, Metric, Seen};
 pub use draw::Draw;
 pub use draw_list::{Batch, DrawList};
-pub use options::{Slots, SurfaceOptions};
+pub use options::{Decides, Slots, SurfaceOptions};
 #[cfg(feature = "vulkan")]
 pub(crate) use patterns::{Key, key};
 pub use residence::Residence;

@@ -16,6 +16,17 @@ pub enum Slots {
     Host,
 }
 
+/// Who decides about the levels of patches, and whether they are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Decides {
+    /// The host, with its draw list: the cut, or depth tags.
+    #[default]
+    Host,
+    /// A compute pass in each frame and for each view, by a [`Decision`](super::Decision), with `gpu::FrameSlot::cmd_decide`. For the tessellator, with slots by
+    /// counters, and without depth tags or counted vertices.
+    Device,
+}
+
 /// How a surface uses the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceOptions {
@@ -27,6 +38,8 @@ pub struct SurfaceOptions {
     pub ring_bytes: u64,
     /// Who gives slots.
     pub slots: Slots,
+    /// Who decides about patches. The device takes 24 bytes a patch and view.
+    pub decides: Decides,
     /// Vertices that can be captured at once; 0 for none.
     pub capture_vertices: u32,
     /// Counts the vertices of each patch as they are evaluated, so that `gpu::TessellatedSurface::arrival` tells whether the device lost any.
@@ -49,14 +62,15 @@ pub struct SurfaceOptions {
 }
 
 impl Default for SurfaceOptions {
-    /// The tessellator, control points in a ring of 1 MiB with counters, no capture, no counts, every level, one round, 64 views, barriers by
-    /// `cmd_draw`.
+    /// The tessellator, control points in a ring of 1 MiB with counters, decided by the host, no capture, no counts, every level, one round, 64 views,
+    /// barriers by `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
             backend: Backend::Tessellator,
             residence: Residence::Ring,
             ring_bytes: 1 << 20,
             slots: Slots::Counter,
+            decides: Decides::Host,
             capture_vertices: 0,
             count_vertices: false,
             rounds: 1,
@@ -80,9 +94,24 @@ impl SurfaceOptions {
         if self.count_vertices && self.capture_vertices > 0 {
             return Err(Error::Misuse(Misuse::CountedAndCaptured));
         }
+        self.check_decides()?;
         check_level(self.greatest_level, MAX_LEVEL)?;
         self.backend
             .check(prepared, self.residence, self.greatest_level)
+    }
+
+    /// # Errors
+    /// [`Misuse::DecidedByDevice`] for what only goes with decisions of the host.
+    fn check_decides(&self) -> Result<()> {
+        let host_slots = self.slots == Slots::Host && self.residence == Residence::Ring;
+        let what = match () {
+            () if self.decides == Decides::Host => return Ok(()),
+            () if self.backend != Backend::Tessellator => "another backend than the tessellator",
+            () if host_slots => "slots by the host",
+            () if self.count_vertices => "counted vertices",
+            () => return Ok(()),
+        };
+        Err(Error::Misuse(Misuse::DecidedByDevice { what }))
     }
 
     /// A cut as the backend makes it.

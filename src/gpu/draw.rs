@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Batch, Draw, DrawList};
+use crate::frame::{Batch, Decides, Draw, DrawList};
 use crate::gpu::ring::cmd_ring_barrier;
 use crate::gpu::sets::STAGES;
 use crate::gpu::{FrameSlot, Layout, OwnLayout, Pipelines, Pose, Tables};
@@ -39,7 +39,7 @@ impl Drawing<'_> {
     /// afterwards.
     ///
     /// # Errors
-    /// [`Misuse::OtherSurface`], [`Misuse::NotWritten`],
+    /// [`Misuse::OtherSurface`], [`Misuse::NotWritten`], [`Misuse::NotDecided`],
     /// [`Misuse::View`], [`Misuse::ViewsInRing`],
     /// [`Misuse::ManyViews`], [`Misuse::Eyes`], [`Misuse::NotCached`], [`Misuse::OtherPipelines`], [`Misuse::BarrierInRendering`] and
     /// [`Misuse::OwnSets`]; nothing has been recorded then.
@@ -98,6 +98,7 @@ impl Drawing<'_> {
         pose.check(tables)?;
         slot.check_list(tables, batch.list())?;
         slot.check_views(views, batch)?;
+        slot.check_decided(views, batch.list())?;
         pose.check_cached(batch.list())?;
         let (count, eyes) = (views.len() as u32, pipelines.eyes());
         if count % eyes != 0 {
@@ -204,6 +205,7 @@ impl Drawing<'_> {
             flags: self.slot.flags()
                 | flag(fractional_even, abi::FRAME_FRACTIONAL_EVEN)
                 | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
+                | flag(self.slot.options().decides == Decides::Device, abi::FRAME_DECIDED)
                 | segments << abi::FRAME_SEGMENTS_SHIFT
                 | eyes << abi::FRAME_EYES_SHIFT,
             first_patch: first,

@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Backend, Batch, Cut, DrawList, Residence, SurfaceOptions};
+use crate::frame::{Backend, Batch, Cut, Decides, DrawList, Residence, SurfaceOptions};
 use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::patterns::Patterns;
@@ -62,7 +63,9 @@ pub struct FrameSlot {
     /// The number of the draw list whose decisions are on the device.
     written: Option<u64>,
     /// The views that `cmd_prepare` was given last.
-    views: AtomicU32,
+    pub(super) views: AtomicU32,
+    /// The number of the draw list that the device has decided about since then, and the view behind the last.
+    decided: Mutex<Option<(u64, u32)>>,
 }
 
 impl FrameSlot {
@@ -97,6 +100,7 @@ impl FrameSlot {
             patterns: Patterns::default(),
             written: None,
             views: AtomicU32::new(0),
+            decided: Mutex::new(None),
         };
         let mut maker = Maker {
             device,
@@ -147,7 +151,11 @@ impl FrameSlot {
         let mut sets = Vec::new();
         for pass in &prepared.passes {
             let patches = pass.patches.len() as u64;
-            let (draws, instances) = (size_of::<abi::PatchDraw>() as u64 * patches, 4 * patches);
+            let views = match self.options.decides {
+                Decides::Host => 1,
+                Decides::Device => u64::from(self.options.views),
+            };
+            let (draws, instances) = (size_of::<abi::PatchDraw>() as u64 * patches * views, 4 * patches);
             let written = MemoryLocation::CpuToGpu;
             let mut capture = numbers.capture;
             // SAFETY: as above.
@@ -319,7 +327,10 @@ impl FrameSlot {
         let transfer = vk::PipelineStageFlags::TRANSFER;
         let stages = stages(self.options.backend);
         // Clip coordinates are made where patches are evaluated, and lit in the fragment shader.
-        let seeing = stages | vk::PipelineStageFlags::FRAGMENT_SHADER;
+        let mut seeing = stages | vk::PipelineStageFlags::FRAGMENT_SHADER;
+        if self.options.decides == Decides::Device {
+            seeing |= vk::PipelineStageFlags::COMPUTE_SHADER;
+        }
         let write = vk::AccessFlags::TRANSFER_WRITE;
         // SAFETY: this function's contract; neither command is allowed inside a render pass, hence this function.
         unsafe {
@@ -338,7 +349,41 @@ impl FrameSlot {
             cmd_make_visible(device, cmd, transfer | stages, seeing, RING_ACCESS);
         }
         self.views.store(count, Ordering::Relaxed);
+        *self.decided.lock().unwrap_or_else(PoisonError::into_inner) = None;
         Ok(())
+    }
+
+    /// Says for which list, and up to which view, the device has decided.
+    pub(super) fn set_decided(&self, list: &DrawList, end: u32) {
+        let mut decided = self.decided.lock().unwrap_or_else(PoisonError::into_inner);
+        let end = match *decided {
+            Some((number, known)) if number == list.number() => known.max(end),
+            _ => end,
+        };
+        *decided = Some((list.number(), end));
+    }
+
+    /// # Errors
+    /// [`Misuse::NotDecided`] where the device decides, and has not yet.
+    pub(super) fn check_decided(&self, views: &Range<u32>, list: &DrawList) -> Result<()> {
+        let decided = *self.decided.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = decided.is_some_and(|(number, end)| number == list.number() && views.end <= end);
+        if known || self.options.decides == Decides::Host {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::NotDecided))
+    }
+
+    /// What the device decided about the patches of a pass in a view; empty where the host decides, or there is no such pass or view. Meaningful when
+    /// [`cmd_read_back`](Self::cmd_read_back) has been executed.
+    pub fn decided(&self, pass: usize, view: u32) -> &[abi::PatchDraw] {
+        let Some(&[draws, _]) = self.numbers.decisions.get(pass) else {
+            return &[];
+        };
+        let records: &[abi::PatchDraw] = bytemuck::cast_slice(self.bound.buffer(draws).bytes());
+        let count = records.len() / self.options.views.max(1) as usize;
+        let of_view = records.chunks(count.max(1)).nth(view as usize);
+        of_view.filter(|_| self.options.decides == Decides::Device).unwrap_or(&[])
     }
 
     /// Records the copy of what was counted and captured to where the host can read it.

@@ -9,6 +9,7 @@ pub mod buffer;
 mod cache;
 mod cached;
 mod call;
+mod decide;
 mod draw;
 pub mod driver;
 pub mod features;
@@ -30,11 +31,14 @@ mod target;
 mod view;
 pub mod workaround;
 
-pub use crate::frame::{Backend, Batch, Cut, DrawList, Residence, Slots, SurfaceOptions};
+pub use crate::frame::{
+    Backend, Batch, Cut, Decides, Decision, DrawList, Metric, Residence, Slots, SurfaceOptions,
+};
 pub use arrival::Arrival;
 pub use buffer::Buffer;
 pub use cache::CachePipelines;
 pub(crate) use call::failed;
+pub use decide::{DecidePipeline, Decided};
 pub use draw::Drawing;
 pub use driver::{Driver, Version};
 pub use features::{Enabled, ExtraFeatures, FeatureChain, OptionalFeatures, Support};

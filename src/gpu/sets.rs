@@ -59,14 +59,14 @@ pub(super) const POSE: &[Slot] = &[
 pub(super) const FRAME: &[Slot] = &[
     (abi::BINDING_SCRATCH, STORAGE, RING),
     (abi::BINDING_COUNTERS, STORAGE, RING),
-    (abi::BINDING_DRAWS, STORAGE, DRAWING),
+    (abi::BINDING_DRAWS, STORAGE, STAGES),
     (abi::BINDING_CAPTURE, STORAGE, BEFORE_FRAGMENTS),
     (
         abi::BINDING_INSTANCES,
         STORAGE,
         vk::ShaderStageFlags::VERTEX,
     ),
-    (abi::BINDING_VIEWS, STORAGE, DRAWING),
+    (abi::BINDING_VIEWS, STORAGE, STAGES),
 ];
 
 /// How many storage buffers a stage sees, the one that sees most.

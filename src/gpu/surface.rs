@@ -6,10 +6,10 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Batch, Cut, DrawList, SurfaceOptions};
+use crate::frame::{Batch, Cut, Decision, DrawList, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
-    Arrival, CachePipelines, Counters, Drawing, FrameSlot, Layout, Memory, Pipelines,
+    Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory, Pipelines,
     PointPipeline, Pose, Tables, View,
 };
 use crate::mesh::Model;
@@ -234,6 +234,37 @@ impl TessellatedSurface {
     ) -> Result<()> {
         // SAFETY: this function's contract.
         unsafe { self.slot.cmd_prepare(device, cmd, views) }
+    }
+
+    /// As [`FrameSlot::cmd_decide`].
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Safety
+    /// As there.
+    #[allow(clippy::too_many_arguments)] // As there.
+    pub unsafe fn cmd_decide(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &DecidePipeline,
+        list: &DrawList,
+        decision: &Decision,
+        decided: &Decided,
+    ) -> Result<()> {
+        let on = (&self.tables, &self.pose);
+        // SAFETY: this function's contract.
+        unsafe {
+            self.slot
+                .cmd_decide(device, cmd, layout, pipeline, on, list, decision, decided)
+        }
+    }
+
+    /// As [`FrameSlot::decided`].
+    pub fn decided(&self, pass: usize, view: u32) -> &[abi::PatchDraw] {
+        self.slot.decided(pass, view)
     }
 
     /// As [`Drawing::cmd_draw`].

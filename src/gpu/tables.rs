@@ -5,15 +5,18 @@ use gpu_allocator::MemoryLocation;
 
 use crate::abi;
 use crate::error::Result;
-use crate::frame::{Residence, SurfaceOptions};
+use crate::frame::{Decides, Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
 use crate::gpu::{Layout, Memory};
-use crate::method::{CachedPoints, Prepared};
+use crate::method::{CachedPoints, Prepared, Table, deciding_tables};
 
 /// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
 /// `minUniformBufferOffsetAlignment`).
 const BASES_STRIDE: u64 = 256;
+
+/// The tables of control points that are cached; behind these are those of decisions.
+const CACHED_TABLES: usize = 3;
 
 /// What a method made of a topology, on the device. It borrows nothing; the owner calls [`Tables::destroy`].
 ///
@@ -29,7 +32,7 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Makes buffers and descriptor sets; of the options count where control points live, the backend and the greatest level. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
+    /// Makes buffers and descriptor sets; of the options count where control points live, who decides, the backend and the greatest level. Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
     ///
     /// # Errors
     /// [`Misuse::BufferTooLarge`](crate::Misuse::BufferTooLarge) where shaders would not see all; Vulkan's own.
@@ -62,7 +65,7 @@ impl Tables {
             layout,
         };
         // SAFETY: this function's contract.
-        match unsafe { tables.make(&mut maker) } {
+        match unsafe { tables.make(&mut maker, options.decides) } {
             Ok(()) => Ok(tables),
             Err(error) => {
                 // SAFETY: nothing of it has been recorded.
@@ -74,7 +77,7 @@ impl Tables {
 
     /// # Safety
     /// As [`Tables::new`].
-    unsafe fn make(&mut self, maker: &mut Maker<'_>) -> Result<()> {
+    unsafe fn make(&mut self, maker: &mut Maker<'_>, decides: Decides) -> Result<()> {
         let Tables {
             prepared,
             cached,
@@ -108,7 +111,12 @@ impl Tables {
             // On the host nobody reads them again.
             let cached = cached.as_mut().and_then(Iterator::next);
             let others = cached.map(|cached| std::mem::take(&mut cached.tables));
-            let (words, bases) = pass.packed(&others.unwrap_or_default());
+            let mut others = others.unwrap_or_default();
+            if decides == Decides::Device {
+                others.resize(CACHED_TABLES, Table::default());
+                others.extend(deciding_tables(&prepared.outline, pass));
+            }
+            let (words, bases) = pass.packed(&others);
             let words: &[u8] = bytemuck::cast_slice(&words);
             let bases = bytemuck::bytes_of(&bases);
             bytes[offset as usize..][..bases.len()].copy_from_slice(bases);

@@ -48,6 +48,7 @@
 mod bft;
 mod cached;
 mod cell;
+mod deciding;
 mod displacement;
 mod flat;
 mod options;
@@ -78,6 +79,8 @@ use origin::Origin;
 
 pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use cell::Cell;
+#[cfg(feature = "vulkan")]
+pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;

@@ -66,6 +66,15 @@ impl Outline {
         &self.edges
     }
 
+    /// The control vertices of a side: of an edge its ends, of a face all in turn. None where there is no such side.
+    pub fn side(&self, side: u32) -> &[u32] {
+        let side = side as usize;
+        match self.edges.get(side) {
+            Some(ends) => ends,
+            None => self.faces.get(side - self.edges.len()),
+        }
+    }
+
     /// Unit normals of the vertices: of the faces around each, by their areas.
     pub(super) fn normals(&self, vertices: &[Vec3]) -> Vec<Vec3> {
         // In f64 products of floats stay within its range.

@@ -41,6 +41,8 @@ pub struct Pass {
     pub twin: Twin,
     /// Tells by which cell the inside of a patch is evaluated; None where patches have no plans.
     pub(super) cell: Option<CellAt>,
+    /// How many control vertices bound a patch; None where they do not, see [`Pass::hull`].
+    pub(super) hull: Option<fn(&Pass, usize) -> u32>,
     /// Of how many control vertices and points it was made. Filled in by [`Method::prepare`](crate::method::Method::prepare).
     pub(super) needs: [usize; 2],
 }
@@ -74,6 +76,7 @@ impl Pass {
             max_level: abi::HIGHEST_LEVEL,
             twin,
             cell: None,
+            hull: None,
             needs: [0; 2],
         }
     }
@@ -126,6 +129,15 @@ impl Pass {
     pub fn is_on_lattice(&self, uv: [f32; 2]) -> bool {
         let segments = (1u32 << self.max_level.saturating_sub(1).min(31)) as f32;
         uv.iter().all(|x| (x * segments).fract() == 0.0)
+    }
+
+    /// The control vertices in whose convex hull the surface of a patch is; none where that is not known, or there is no such patch.
+    pub fn hull(&self, patch: usize) -> &[u32] {
+        let (Some(count), Some(record)) = (self.hull, self.patches.get(patch)) else {
+            return &[];
+        };
+        let first = record.controls as usize;
+        &self.controls[first..first + count(self, patch) as usize]
     }
 
     /// The points that patch `patch` needs in the ring at `level`, from 10 on as at 10; none where there is no such patch.

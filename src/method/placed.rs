@@ -28,11 +28,16 @@ impl Pass {
             (size_of::<[f32; 2]>(), bytemuck::cast_slice(&self.texture)),
         ];
         let shared = shared.map(|(bytes, words)| (bytes / 4, words));
-        let tables = self.tables.iter().chain(others);
-        let own = tables.map(|table| (table.stride, &table[..]));
+        // Others begin behind all tables that a method may have.
+        let missing = abi::TABLES as usize - self.tables.len().min(abi::TABLES as usize);
+        let missing = if others.is_empty() { 0 } else { missing };
+        let none = std::iter::repeat_n((1, &[][..]), missing);
+        let table = |table: &'a Table| (table.stride.max(1), &table[..]);
+        let own = self.tables.iter().map(table).chain(none);
+        let own = own.chain(others.iter().map(table));
         let mut end = 0usize;
         let all = shared.into_iter().chain(own).map(|(stride, words)| {
-            let base = end.div_ceil(stride.max(1));
+            let base = end.div_ceil(stride);
             let placed = Placed {
                 base,
                 stride,
@@ -65,6 +70,7 @@ impl Pass {
             controls: base(1),
             texture: base(2),
             own: std::array::from_fn(|own| base(3 + own)),
+            patches: self.patches.len() as u32,
         };
         (words, bases)
     }

@@ -124,6 +124,8 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     let started = Instant::now();
     let smooth = SmoothQuads::new(model.topology());
     let mut regular = pass("quadtree_regular", 16, twin::regular, options);
+    // Masks of Catmull-Clark have no negative weights: a limit is within the hull of what it is a sum of.
+    regular.hull = Some(|_, _| 16);
     let [mut short, mut long] =
         ["quadtree", "quadtree_long"].map(|shader| Planning::new(shader, options));
     let parts = patches::parts(model);
@@ -311,6 +313,7 @@ fn irregular(
     } = planning;
     pass.cached = Some("quadtree_cached");
     pass.cell = Some(twin::cell);
+    pass.hull = Some(twin::ring_size);
     pass.patches.shrink_to_fit();
     pass.texture.shrink_to_fit();
     pass.controls.shrink_to_fit();

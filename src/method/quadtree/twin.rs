@@ -201,6 +201,11 @@ pub(super) fn cell(pass: &Pass, patch: usize, uv: Vec2) -> Option<Cell> {
     })
 }
 
+/// How many vertices the ring of a patch has.
+pub(super) fn ring_size(pass: &Pass, patch: usize) -> u32 {
+    Border::of(pass, patch).used(0).size
+}
+
 /// From along a patch's edge to along the whole edge in its own direction.
 fn on_edge(flags: u32, [t, s]: [f32; 2]) -> f32 {
     let [t, s] = match () {

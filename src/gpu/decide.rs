@@ -1,0 +1,150 @@
+//! Deciding about patches on the device: their levels, and which are not drawn.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use ash::vk;
+
+use crate::abi;
+use crate::error::{Error, Misuse, Result};
+use crate::frame::{Decides, Decision, DrawList, Metric};
+use crate::gpu::barrier::cmd_make_visible;
+use crate::gpu::points::compute_pipeline;
+use crate::gpu::sets::STAGES;
+use crate::gpu::{FrameSlot, Layout, Pose, Tables};
+
+/// The pipeline that decides about patches, the same for all methods.
+#[derive(Debug)]
+pub struct DecidePipeline {
+    pipeline: vk::Pipeline,
+}
+
+impl DecidePipeline {
+    /// Builds it. The cache may go afterwards.
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    ///
+    /// # Safety
+    /// `device` is live; `layout` and `cache` (or null) are of this device.
+    pub unsafe fn new(
+        device: &ash::Device,
+        layout: &Layout,
+        cache: vk::PipelineCache,
+    ) -> Result<DecidePipeline> {
+        // SAFETY: this function's contract.
+        let pipeline = unsafe { compute_pipeline(device, layout, cache, "decide.comp")? };
+        Ok(DecidePipeline { pipeline })
+    }
+
+    /// Destroys it.
+    ///
+    /// # Safety
+    /// `device` made it, and no submitted command still uses it.
+    pub unsafe fn destroy(self, device: &ash::Device) {
+        // SAFETY: this function's contract.
+        unsafe { device.destroy_pipeline(self.pipeline, None) };
+    }
+}
+
+/// What is decided about: of all that is drawn of a pose, in the views of a range. With multiview, `eyes` of them are drawn together: they get the levels that the one
+/// of them needs that needs most, and what any of them sees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decided {
+    /// The views, of those that `cmd_prepare` was given.
+    pub views: Range<u32>,
+    /// How many views an instance has: 1, but with multiview.
+    pub eyes: u32,
+}
+
+impl FrameSlot {
+    /// Records what the device decides about all patches, for the views of a range: needed behind [`cmd_prepare`](Self::cmd_prepare) before they are drawn, where
+    /// [`Decides::Device`] says so. Nothing of it takes the host's time by patch, and no frame in flight waits for another: each has a slot of its own.
+    ///
+    /// Later draws wait for it. Binds a compute pipeline and sets 0 to 2, and pushes constants.
+    ///
+    /// # Errors
+    /// [`Misuse::OtherSurface`]; [`Misuse::DecidedByDevice`] where the host decides; [`Misuse::View`], [`Misuse::Eyes`] for views that there are not;
+    /// [`Misuse::Measure`]. Nothing has been recorded then.
+    ///
+    /// # Safety
+    /// `cmd` is recording on `device`, which made all of this, after `cmd_prepare`, outside of a render pass, on a queue that also computes, and is submitted
+    /// before whatever draws; control vertices are visible to `SHADER_READ` in the compute stage. All of it lives until the commands have been executed.
+    #[allow(clippy::too_many_arguments)] // What is recorded, by what, and what about: as for the other commands.
+    pub unsafe fn cmd_decide(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &DecidePipeline,
+        (tables, pose): (&Tables, &Pose),
+        list: &DrawList,
+        decision: &Decision,
+        decided: &Decided,
+    ) -> Result<()> {
+        pose.check(tables)?;
+        self.check_owner(tables, list)?;
+        self.check_decision(decision, decided)?;
+        let Decided { views, eyes } = decided;
+        let bind = vk::PipelineBindPoint::COMPUTE;
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let readers = pose.readers();
+        let passes = tables.prepared().passes.iter().enumerate();
+        // SAFETY: this function's contract.
+        unsafe {
+            let write = vk::AccessFlags::SHADER_WRITE;
+            cmd_make_visible(device, cmd, readers | compute, compute, write);
+            device.cmd_bind_pipeline(cmd, bind, pipeline.pipeline);
+        }
+        for (number, pass) in passes.filter(|(_, pass)| !pass.patches.is_empty()) {
+            let sets = [tables.set(number), pose.set(), self.set(number)];
+            let record = decision.record(views.start, *eyes, list.cut(), pass.max_level);
+            let groups = (pass.patches.len() as u32).div_ceil(abi::DECIDE_INVOCATIONS);
+            let constants = bytemuck::bytes_of(&record);
+            // SAFETY: as above.
+            unsafe {
+                device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &sets, &[]);
+                device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
+                device.cmd_dispatch(cmd, groups, views.len() as u32 / eyes, 1);
+            }
+        }
+        let read = vk::AccessFlags::SHADER_READ;
+        // SAFETY: as above.
+        unsafe { cmd_make_visible(device, cmd, compute, readers, read) };
+        self.set_decided(list, views.end);
+        Ok(())
+    }
+
+    /// # Errors
+    /// As [`cmd_decide`](Self::cmd_decide).
+    fn check_decision(&self, decision: &Decision, decided: &Decided) -> Result<()> {
+        if self.options().decides == Decides::Host {
+            let what = "options by which the host decides";
+            return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
+        }
+        let Decided { views, eyes } = decided;
+        let (count, eyes) = (views.len() as u32, *eyes);
+        if eyes == 0 || count % eyes != 0 {
+            let views = count;
+            return Err(Error::Misuse(Misuse::Eyes { views, eyes }));
+        }
+        let given = self.views.load(Ordering::Relaxed);
+        let seen = decision.seen_from.unwrap_or(views.start);
+        for end in [u64::from(views.end), u64::from(seen) + u64::from(count)] {
+            if end > u64::from(given) {
+                let (view, views) = (end as u32 - 1, given);
+                return Err(Error::Misuse(Misuse::View { view, views }));
+            }
+        }
+        let measures = match decision.metric {
+            Metric::Cut => [1.0; 3],
+            Metric::Distance(near) => [near; 3],
+            Metric::Screen { pixels, size: [x, y] } => [pixels, x, y],
+        };
+        // What is no number is not greater either.
+        match measures.into_iter().find(|&given| !(given > 0.0 && given.is_finite())) {
+            Some(given) => Err(Error::Misuse(Misuse::Measure { given })),
+            None => Ok(()),
+        }
+    }
+}

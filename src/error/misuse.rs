@@ -111,7 +111,9 @@ pub enum Misuse {
         what: &'static str,
     },
     /// The device decides about patches, and has not yet for the views that are drawn, at this list's cut.
-    #[error("the device has not decided about all views that are drawn: cmd_decide comes behind cmd_prepare, with this draw list")]
+    #[error(
+        "the device has not decided about all views that are drawn: cmd_decide comes behind cmd_prepare, with this draw list"
+    )]
     NotDecided,
     /// Something that a decision goes by is not greater than 0.
     #[error("a decision goes by {given}, and has to go by something greater than 0")]

@@ -100,7 +100,13 @@ impl Decision {
             self.level_of_side(list, vertices, cut, seen)
         };
         let edges = pass.sides.get(patch)?.each_ref().map(level);
-        Some(levels_of_edges(pass.domain, record, edges, cut.spacing, pass.max_level))
+        Some(levels_of_edges(
+            pass.domain,
+            record,
+            edges,
+            cut.spacing,
+            pass.max_level,
+        ))
     }
 
     /// The level of an edge, given by its ends, or the greatest of a face's.
@@ -109,7 +115,8 @@ impl Decision {
             return cut.level;
         }
         let edges = if list.len() == 2 { 1 } else { list.len() };
-        let ends = |edge: usize| [edge, (edge + 1) % list.len()].map(|i| vertices[list[i] as usize]);
+        let ends =
+            |edge: usize| [edge, (edge + 1) % list.len()].map(|i| vertices[list[i] as usize]);
         let levels = (0..edges).map(|edge| self.level_of_ends(ends(edge), cut, seen));
         levels.fold(cut.spacing.least(), f32::max).min(cut.level)
     }

@@ -11,6 +11,7 @@ use crate::frame::{Decides, Decision, DrawList, Metric};
 use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::points::compute_pipeline;
 use crate::gpu::sets::STAGES;
+use crate::gpu::shaders::Embedded;
 use crate::gpu::{FrameSlot, Layout, Pose, Tables};
 
 /// The pipeline that decides about patches, the same for all methods.
@@ -33,7 +34,8 @@ impl DecidePipeline {
         cache: vk::PipelineCache,
     ) -> Result<DecidePipeline> {
         // SAFETY: this function's contract.
-        let pipeline = unsafe { compute_pipeline(device, layout, cache, "decide.comp")? };
+        let pipeline =
+            unsafe { compute_pipeline(device, layout, cache, "decide.comp", &Embedded)? };
         Ok(DecidePipeline { pipeline })
     }
 
@@ -139,10 +141,16 @@ impl FrameSlot {
         let measures = match decision.metric {
             Metric::Cut => [1.0; 3],
             Metric::Distance(near) => [near; 3],
-            Metric::Screen { pixels, size: [x, y] } => [pixels, x, y],
+            Metric::Screen {
+                pixels,
+                size: [x, y],
+            } => [pixels, x, y],
         };
         // What is no number is not greater either.
-        match measures.into_iter().find(|&given| !(given > 0.0 && given.is_finite())) {
+        match measures
+            .into_iter()
+            .find(|&given| !(given > 0.0 && given.is_finite()))
+        {
             Some(given) => Err(Error::Misuse(Misuse::Measure { given })),
             None => Ok(()),
         }

@@ -205,7 +205,10 @@ impl Drawing<'_> {
             flags: self.slot.flags()
                 | flag(fractional_even, abi::FRAME_FRACTIONAL_EVEN)
                 | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
-                | flag(self.slot.options().decides == Decides::Device, abi::FRAME_DECIDED)
+                | flag(
+                    self.slot.options().decides == Decides::Device,
+                    abi::FRAME_DECIDED,
+                )
                 | segments << abi::FRAME_SEGMENTS_SHIFT
                 | eyes << abi::FRAME_EYES_SHIFT,
             first_patch: first,

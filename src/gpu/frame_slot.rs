@@ -64,8 +64,8 @@ pub struct FrameSlot {
     written: Option<u64>,
     /// The views that `cmd_prepare` was given last.
     pub(super) views: AtomicU32,
-    /// The number of the draw list that the device has decided about since then, and the view behind the last.
-    decided: Mutex<Option<(u64, u32)>>,
+    /// At which cut the device has decided since then, and the view behind the last.
+    decided: Mutex<Option<(Cut, u32)>>,
 }
 
 impl FrameSlot {
@@ -155,7 +155,10 @@ impl FrameSlot {
                 Decides::Host => 1,
                 Decides::Device => u64::from(self.options.views),
             };
-            let (draws, instances) = (size_of::<abi::PatchDraw>() as u64 * patches * views, 4 * patches);
+            let (draws, instances) = (
+                size_of::<abi::PatchDraw>() as u64 * patches * views,
+                4 * patches,
+            );
             let written = MemoryLocation::CpuToGpu;
             let mut capture = numbers.capture;
             // SAFETY: as above.
@@ -353,21 +356,21 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// Says for which list, and up to which view, the device has decided.
+    /// Says at which cut, and up to which view, the device has decided.
     pub(super) fn set_decided(&self, list: &DrawList, end: u32) {
         let mut decided = self.decided.lock().unwrap_or_else(PoisonError::into_inner);
         let end = match *decided {
-            Some((number, known)) if number == list.number() => known.max(end),
+            Some((cut, known)) if cut == list.cut() => known.max(end),
             _ => end,
         };
-        *decided = Some((list.number(), end));
+        *decided = Some((list.cut(), end));
     }
 
     /// # Errors
     /// [`Misuse::NotDecided`] where the device decides, and has not yet.
     pub(super) fn check_decided(&self, views: &Range<u32>, list: &DrawList) -> Result<()> {
         let decided = *self.decided.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = decided.is_some_and(|(number, end)| number == list.number() && views.end <= end);
+        let known = decided.is_some_and(|(cut, end)| cut == list.cut() && views.end <= end);
         if known || self.options.decides == Decides::Host {
             return Ok(());
         }
@@ -383,7 +386,9 @@ impl FrameSlot {
         let records: &[abi::PatchDraw] = bytemuck::cast_slice(self.bound.buffer(draws).bytes());
         let count = records.len() / self.options.views.max(1) as usize;
         let of_view = records.chunks(count.max(1)).nth(view as usize);
-        of_view.filter(|_| self.options.decides == Decides::Device).unwrap_or(&[])
+        of_view
+            .filter(|_| self.options.decides == Decides::Device)
+            .unwrap_or(&[])
     }
 
     /// Records the copy of what was counted and captured to where the host can read it.

@@ -9,8 +9,8 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, Decision, DrawList, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
-    Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory, Pipelines,
-    PointPipeline, Pose, Tables, View,
+    Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory,
+    Pipelines, PointPipeline, Pose, Tables, View,
 };
 use crate::mesh::Model;
 use crate::method::{CachedPoints, DepthTags, Prepared};

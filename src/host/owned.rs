@@ -5,8 +5,8 @@ use std::ops::{Deref, DerefMut};
 use gpu_allocator::vulkan::Allocator;
 
 use crate::gpu::{
-    Buffer, CachePipelines, FrameSlot, Layout, Pipelines, PointPipeline, Pose, Tables,
-    TessellatedSurface,
+    Buffer, CachePipelines, DecidePipeline, FrameSlot, Layout, Pipelines, PointPipeline, Pose,
+    Tables, TessellatedSurface,
 };
 use crate::host::Device;
 
@@ -37,7 +37,7 @@ macro_rules! destroyed {
 }
 
 destroyed!(
-    CachePipelines, Layout, Pipelines, PointPipeline;
+    CachePipelines, DecidePipeline, Layout, Pipelines, PointPipeline;
     Buffer, FrameSlot, Pose, Tables, TessellatedSurface
 );
 

@@ -18,10 +18,14 @@ pub(crate) fn deciding_tables(outline: &Outline, pass: &Pass) -> [Table; 2] {
             first
         })
     };
-    let records = pass.sides.iter().enumerate().map(|(patch, sides)| abi::PatchSides {
-        sides: sides.map(&mut list),
-        hull: pass.hull(patch).len() as u32,
-    });
+    let records = pass
+        .sides
+        .iter()
+        .enumerate()
+        .map(|(patch, sides)| abi::PatchSides {
+            sides: sides.map(&mut list),
+            hull: pass.hull(patch).len() as u32,
+        });
     let records: Vec<abi::PatchSides> = records.collect();
     [Table::of(&records), Table::of(&lists)]
 }

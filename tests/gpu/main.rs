@@ -9,6 +9,7 @@ mod common;
 mod backends;
 mod cache;
 mod canvas;
+mod decide;
 mod edges;
 mod flight;
 mod hexagon;

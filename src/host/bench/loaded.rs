@@ -7,9 +7,10 @@ use ash::vk;
 use super::{Bench, Shot, Style};
 use crate::abi::Captured;
 use crate::error::{Error, Result};
-use crate::frame::{Batch, Cut, DrawList, Residence, SurfaceOptions};
+use crate::frame::{Batch, Cut, Decides, Decision, DrawList, Residence, SurfaceOptions};
 use crate::gpu::{
-    CachePipelines, Counters, Fill, PointPipeline, TessellatedSurface, View, Workaround, ring,
+    CachePipelines, Counters, DecidePipeline, Decided, Fill, PointPipeline, TessellatedSurface,
+    View, Workaround, ring,
 };
 use crate::host::Owned;
 use crate::mesh::Model;
@@ -20,6 +21,9 @@ pub struct Loaded<'a> {
     bench: &'a Bench,
     surface: Owned<TessellatedSurface>,
     cache_pipelines: Option<Owned<CachePipelines>>,
+    decide_pipeline: Option<Owned<DecidePipeline>>,
+    /// What the device decides by, where it does.
+    pub decision: Decision,
     /// What [`capture`](Self::capture) and [`picture`](Self::picture) show: at first everything from the side, within the picture and its depth.
     pub view: View,
     /// A depth for each control vertex, where levels of [`draw_list`](Self::draw_list) go by them.
@@ -107,8 +111,17 @@ impl Bench {
             });
         // SAFETY: as above.
         let own = |pipelines| unsafe { Owned::new(self.device(), pipelines) };
+        let decides = (options.decides == Decides::Device)
+            // SAFETY: as above.
+            .then(|| unsafe { DecidePipeline::new(device, layout, cache) });
+        // SAFETY: as above.
+        let decides = decides
+            .transpose()?
+            .map(|made| unsafe { Owned::new(self.device(), made) });
         Ok(Loaded {
             bench: self,
+            decide_pipeline: decides,
+            decision: Decision::default(),
             cache_pipelines: cached.transpose()?.map(own),
             surface,
             view: from_the_side(model),
@@ -300,6 +313,7 @@ impl Loaded<'_> {
         device.submit(|cmd| unsafe {
             before(cmd);
             self.surface.cmd_prepare(device.raw(), cmd, &views)?;
+            self.cmd_decide(cmd, shots)?;
             if let Some(query) = query {
                 query.cmd_reset(cmd);
             }
@@ -324,6 +338,35 @@ impl Loaded<'_> {
             Ok(())
         })?;
         query.map(|query| query.read()).transpose()
+    }
+
+    /// Where the device decides, it does so for all shots, whose lists have one cut.
+    ///
+    /// # Safety
+    /// `cmd` is recording, after `cmd_prepare`, outside of a render pass.
+    unsafe fn cmd_decide(&self, cmd: vk::CommandBuffer, shots: &[Shot<'_>]) -> Result<()> {
+        let (device, layout) = (self.bench.device().raw(), self.bench.layout());
+        let list = shots.iter().flat_map(|shot| &shot.batches).next();
+        let Some((pipeline, batch)) = self.decide_pipeline.as_ref().zip(list) else {
+            return Ok(());
+        };
+        let decided = Decided {
+            views: 0..shots.iter().map(|shot| shot.instances).sum(),
+            eyes: 1,
+        };
+        let (surface, decision) = (&self.surface, &self.decision);
+        // SAFETY: this function's contract; all of one device.
+        unsafe {
+            surface.cmd_decide(
+                device,
+                cmd,
+                layout,
+                pipeline,
+                batch.list(),
+                decision,
+                &decided,
+            )
+        }
     }
 
     /// Between two batches that do not know of each other (each is the first to use the ring) there is a barrier; and where the surface records

@@ -458,10 +458,13 @@ impl Builder<'_> {
         let all = &mut self.found.places;
         let mut words = Vec::new();
         places::push(&mut words, ring, places.iter().copied());
-        *self.lists.entry(List::from_vec(words)).or_insert_with_key(|words: &List| {
-            all.extend_from_slice(words);
-            (all.len() - words.len()) as u32
-        })
+        *self
+            .lists
+            .entry(List::from_vec(words))
+            .or_insert_with_key(|words: &List| {
+                all.extend_from_slice(words);
+                (all.len() - words.len()) as u32
+            })
     }
 
     /// The node of a B-spline of plain points.

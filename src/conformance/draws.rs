@@ -199,7 +199,7 @@ impl Plan {
     fn index_words(&self) -> Vec<u32> {
         let count = self.first_index + self.per_instance() * self.control_points;
         if self.short_indices {
-            let pair = |i: u32| 2 * i & 0xffff | (2 * i + 1) << 16;
+            let pair = |i: u32| (2 * i) & 0xffff | (2 * i + 1) << 16;
             (0..count.div_ceil(2)).map(pair).collect()
         } else {
             (0..count).collect()

@@ -226,6 +226,36 @@ fn expectations_decide_what_is_unexpected() {
     others_pass(statuses(&crashing, 1), "Crash");
 }
 
+/// deqp-runner's lists: of fails with their statuses, of flakes, and of what is left out.
+#[test]
+fn what_a_run_exports_the_next_one_expects() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = folder.path().join("known").display().to_string();
+    let fails = format!("{name}-fails.txt");
+    let fault = format!("crash:{VICTIM}");
+    let part = ["--filter", PART, "--fault", &fault];
+    let export = ["--export-expectations", name.as_str()];
+    others_pass(statuses(&[&part[..], &export].concat(), 1), "Crash");
+    let text = std::fs::read_to_string(&fails).expect("it was written");
+    assert_eq!(text, format!("hullform.{VICTIM},Crash\n"));
+    let known = [&part[..], &["--expectations", &fails]].concat();
+    others_pass(statuses(&known, 0), "ExpectedFail");
+    std::fs::write(format!("{name}-skips.txt"), "isolines-equal\\.counts$\n").expect("written");
+    others_pass(statuses(&known, 0), "Skip");
+    let words = fails_to_write(&export);
+    assert!(words.contains("known-fails.txt"), "{words}");
+}
+
+/// A list that is read is not written.
+fn fails_to_write(export: &[&str; 2]) -> String {
+    let list = format!("{}-fails.txt", export[1]);
+    let arguments = ["verify", "--filter", PART, "--expectations", &list];
+    fails(&[&arguments[..], export].concat(), 2)
+}
+
 #[test]
 fn a_list_that_makes_no_sense_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");

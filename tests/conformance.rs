@@ -9,45 +9,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use common::cli::{fails, has_device, hullform, run, stderr, stdout};
+use hullform::conformance::SMOKE;
 use serde_json::Value;
-
-/// A part of each group that is quick and whose cases no driver is known to fail.
-const PARTS: [&str; 34] = [
-    "coordinates.quads-equal.*",
-    "coordinates.triangles-fractional_odd.*",
-    "limit.valence.boundary-[1-5]",
-    "limit.kind.*-equal",
-    "witness.*.cube",
-    "witness.cusp.[12]",
-    "witness.plane.quadtree-*",
-    "edges.kind.s*-equal",
-    "edges.picture-*.[bc]*-equal",
-    "backends.same.*-qas-*-cube",
-    "backends.tags.*-bft-loop-cube-*",
-    "scale.*.draw-1025_patches-*-from_70000",
-    "scale.vertices_per_batch.*-1023_patches-*",
-    "visibility.coherent.*",
-    "determinism.[!c]*.ngons-equal",
-    "statistics.*.*s-equal",
-    "robustness.*.quads-*",
-    "connectivity.*.quads-fractional_odd-between-some",
-    "connectivity.*.triangles-equal-whole-some",
-    "connectivity.lines.*-inner-one",
-    "winding.triangles.quads-equal-*-cull_[nf]*",
-    "winding.points.*-fractional_even-*",
-    "winding.lines.*-equal-*",
-    "draws.remainder.*-3_points-*",
-    "draws.empty.*",
-    "draws.several.*-17_commands-*",
-    "primitive_id.written.*-64_patches-*",
-    "primitive_id.[gh]*-7_patches-*",
-    "io.vertices.3_in-4_out",
-    "state.points.3-*",
-    "geometry.*.quads-fractional_odd-*",
-    "barriers.[vb]*.3_invocations-1_*",
-    "precision.*.de_casteljau-*",
-    "compute_visibility.*-300_patches",
-];
 
 /// Runs the suite and returns the statuses by name, from the CSV.
 fn statuses(arguments: &[&str], code: i32) -> BTreeMap<String, String> {
@@ -80,7 +43,7 @@ fn a_part_of_each_group_passes_under_validation() {
     if !has_device() {
         return;
     }
-    for part in PARTS {
+    for part in SMOKE {
         all_are(&statuses(&["--validation", "--filter", part], 0), "Pass");
     }
 }
@@ -90,10 +53,22 @@ fn a_seeded_fault_is_caught_in_every_group() {
     if !has_device() {
         return;
     }
-    for part in PARTS {
+    for part in SMOKE {
         let found = statuses(&["--fault", "wrong:*", "--filter", part], 1);
         all_are(&found, "Fail");
     }
+}
+
+/// Its measurements are right or wrong as it happens; what is missing is seen all the same.
+#[test]
+fn a_missing_barrier_is_told_by_synchronization_validation() {
+    if !has_device() {
+        return;
+    }
+    let case = "compute_visibility.memory_barrier.control-300_patches";
+    let arguments = ["--validation", "--filter", case, "--fault", "wrong:*"];
+    let words = measured(&arguments, case);
+    assert!(words.contains("SYNC-HAZARD-READ-AFTER-WRITE"), "{words}");
 }
 
 #[test]
@@ -249,6 +224,36 @@ fn expectations_decide_what_is_unexpected() {
     let fault = format!("crash:{VICTIM}");
     let crashing = [&part[..], &["--fault", &fault]].concat();
     others_pass(statuses(&crashing, 1), "Crash");
+}
+
+/// deqp-runner's lists: of fails with their statuses, of flakes, and of what is left out.
+#[test]
+fn what_a_run_exports_the_next_one_expects() {
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = folder.path().join("known").display().to_string();
+    let fails = format!("{name}-fails.txt");
+    let fault = format!("crash:{VICTIM}");
+    let part = ["--filter", PART, "--fault", &fault];
+    let export = ["--export-expectations", name.as_str()];
+    others_pass(statuses(&[&part[..], &export].concat(), 1), "Crash");
+    let text = std::fs::read_to_string(&fails).expect("it was written");
+    assert_eq!(text, format!("hullform.{VICTIM},Crash\n"));
+    let known = [&part[..], &["--expectations", &fails]].concat();
+    others_pass(statuses(&known, 0), "ExpectedFail");
+    std::fs::write(format!("{name}-skips.txt"), "isolines-equal\\.counts$\n").expect("written");
+    others_pass(statuses(&known, 0), "Skip");
+    let words = fails_to_write(&export);
+    assert!(words.contains("known-fails.txt"), "{words}");
+}
+
+/// A list that is read is not written.
+fn fails_to_write(export: &[&str; 2]) -> String {
+    let list = format!("{}-fails.txt", export[1]);
+    let arguments = ["verify", "--filter", PART, "--expectations", &list];
+    fails(&[&arguments[..], export].concat(), 2)
 }
 
 #[test]

@@ -208,6 +208,9 @@ fn what_makes_no_sense_is_refused_and_what_is_not_there_is_told() {
         "--deqp-surface-width=256",
         "--deqp-gl-config-name=rgba8888d24s8ms0",
         "--deqp-log-images=disable",
+        "--deqp-log-images=enable",
+        "--deqp-log-flush=enable",
+        "--deqp-log-flush=disable",
         "--deqp-shadercache-filename=/nowhere/cache",
         "--deqp-case=hullform.no.such",
     ];

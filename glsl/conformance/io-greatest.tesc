@@ -11,7 +11,7 @@ layout(location = 1) in uint in_instance[];
 
 layout(location = 0) out vec4 out_values[][VALUES];
 layout(location = 15) patch out vec4 out_lists[LISTS];
-layout(location = 31) patch out uint out_patch;
+layout(location = 29) patch out uint out_patch;
 out gl_PerVertex { vec4 gl_Position; } gl_out[];
 
 void main() {

@@ -7,7 +7,7 @@ layout(quads, equal_spacing, ccw) in;
 
 layout(location = 0) in vec4 in_values[][VALUES];
 layout(location = 15) patch in vec4 in_lists[LISTS];
-layout(location = 31) patch in uint in_patch;
+layout(location = 29) patch in uint in_patch;
 in gl_PerVertex { vec4 gl_Position; } gl_in[gl_MaxPatchVertices];
 
 void main() {

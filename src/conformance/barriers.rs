@@ -1,7 +1,8 @@
 //! Group `barriers`: invocations of a control shader that read what others of their patch wrote, round by round.
 //!
 //! Four rounds with two barriers each, over outputs of the vertices, arrays and vectors of the patch, positions, and a buffer; drivers have merged and dropped
-//! such barriers, and lost what stood between them. A seeded fault lets the evaluation shader expect the next word.
+//! such barriers, and lost what stood between them. A device may run the control shader of a patch twice: if it did so at the same time, the two would meet in the
+//! buffer, and only there. A seeded fault lets the evaluation shader expect the next word.
 
 use crate::conformance::modes::{module, with_invocations};
 use crate::conformance::raw::{Program, Raster, Raw};

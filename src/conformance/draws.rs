@@ -3,7 +3,6 @@
 //! Control points that make no whole patch are dropped, draws of nothing draw nothing, and where a draw begins, how many commands one call has and how many patches a
 //! command, is no matter. The shaders are those of `scale`. A seeded fault expects the patch behind the last one of each draw as well.
 
-use std::borrow::Cow;
 use std::time::Duration;
 
 use ash::vk;
@@ -199,7 +198,7 @@ impl Plan {
     fn index_words(&self) -> Vec<u32> {
         let count = self.first_index + self.per_instance() * self.control_points;
         if self.short_indices {
-            let pair = |i: u32| 2 * i & 0xffff | (2 * i + 1) << 16;
+            let pair = |i: u32| (2 * i) & 0xffff | (2 * i + 1) << 16;
             (0..count.div_ceil(2)).map(pair).collect()
         } else {
             (0..count).collect()
@@ -238,10 +237,7 @@ fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
         control_points: plan.control_points,
         constants: vec![plan.control_points],
         raster: Raster::Discard,
-        ..Program::new(
-            Cow::Borrowed(module("scale.tesc")?),
-            Cow::Borrowed(module("scale.tese")?),
-        )?
+        ..Program::new(module("scale.tesc")?, module("scale.tese")?)?
     })?;
     let mut constants = Constants {
         per_instance: plan.per_instance(),

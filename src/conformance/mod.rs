@@ -55,7 +55,7 @@ pub use expectations::{Cases, Expectation, Expectations, Lists};
 pub use opened::Opened;
 pub use program::own_program;
 pub use random::Random;
-pub use registry::{GROUPS, Registry};
+pub use registry::{GROUPS, Registry, SMOKE};
 pub use report::{CaseResult, Report};
 pub use runner::{RunOptions, Runner, Turn};
 pub use worker::work;

@@ -33,6 +33,45 @@ pub const GROUPS: &[Group] = &[
     compute_visibility::GROUP,
 ];
 
+/// A part of each group that is quick and whose cases no driver is known to fail: before the names of these cases `smoke.` may stand in a filter.
+pub const SMOKE: [&str; 35] = [
+    "coordinates.quads-equal.*",
+    "coordinates.triangles-fractional_odd.*",
+    "limit.valence.boundary-[1-5]",
+    "limit.kind.*-equal",
+    "witness.*.cube",
+    "witness.cusp.[12]",
+    "witness.plane.quadtree-*",
+    "edges.kind.s*-equal",
+    "edges.picture-*.[bc]*-equal",
+    "backends.same.*-qas-*-cube",
+    "backends.tags.*-bft-loop-cube-*",
+    "scale.*.draw-1025_patches-*-from_70000",
+    "scale.vertices_per_batch.*-1023_patches-*",
+    "visibility.coherent.*",
+    "determinism.[!c]*.ngons-equal",
+    "statistics.*.*s-equal",
+    "robustness.*.quads-*",
+    "connectivity.*.quads-fractional_odd-between-some",
+    "connectivity.*.triangles-equal-whole-some",
+    "connectivity.lines.*-inner-one",
+    "winding.triangles.quads-equal-*-cull_[nf]*",
+    "winding.points.*-fractional_even-*",
+    "winding.lines.*-equal-*",
+    "draws.remainder.*-3_points-*",
+    "draws.empty.*",
+    "draws.several.*-17_commands-*",
+    "primitive_id.written.*-64_patches-*",
+    "primitive_id.[gh]*-7_patches-*",
+    "io.vertices.3_in-4_out",
+    "io.greatest.4_vertices",
+    "state.points.3-*",
+    "geometry.*.quads-fractional_odd-*",
+    "barriers.[vb]*.3_invocations-1_*",
+    "precision.*.de_casteljau-*",
+    "compute_visibility.*-300_patches",
+];
+
 /// Cases to run, in order.
 #[derive(Debug)]
 pub struct Registry {
@@ -57,7 +96,7 @@ impl Registry {
         }
     }
 
-    /// Keeps the cases whose names match a pattern; `*` stands for dots as well.
+    /// Keeps the cases whose names match a pattern; `*` stands for dots as well. Those of [`SMOKE`] have a second name, with `smoke.` before it.
     ///
     /// # Errors
     /// [`Error::Option`] for what is no pattern, or matches nothing: a filter with a typing error shall not pass.
@@ -70,7 +109,11 @@ impl Registry {
         };
         let compiled = Pattern::new(pattern)
             .map_err(|error| refused(format!("'{pattern}' is no pattern: {error}")))?;
-        self.cases.retain(|case| compiled.matches(&case.name));
+        let smoke = SMOKE.map(|part| Pattern::new(part).expect("tests read every part"));
+        self.cases.retain(|Case { name, .. }| {
+            let is_smoke = || smoke.iter().any(|part| part.matches(name));
+            compiled.matches(name) || compiled.matches(&format!("smoke.{name}")) && is_smoke()
+        });
         if self.cases.is_empty() {
             return Err(refused(format!("no case matches '{pattern}'")));
         }
@@ -128,6 +171,21 @@ mod tests {
         );
         assert!(suite.filter("no.such.case").is_err());
         assert!(Registry::suite().filter("[").is_err());
+    }
+
+    #[test]
+    fn a_part_of_each_group_is_smoke() {
+        let mut smoke = Registry::suite();
+        smoke.filter("smoke.*").expect("there are such");
+        assert!((100..500).contains(&smoke.cases.len()));
+        for group in GROUPS {
+            let own = format!("smoke.{}.*", group.name);
+            Registry::suite().filter(&own).expect("each has some");
+        }
+        for part in SMOKE {
+            smoke.filter(part).expect("each part has some");
+            smoke = Registry::suite();
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Each draw has a cell of the picture, and must leave there what it leaves when it is alone. A seeded fault compares with the next one's.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use crate::conformance::modes::{Domain, Modes, Spacing, module};
 use crate::conformance::random::Random;
@@ -117,8 +118,8 @@ fn draw(context: &Context, states: &[State], which: &[usize]) -> Result<Left> {
     let mut pipelines = BTreeMap::new();
     for &place in which {
         let state = states[place];
-        if !pipelines.contains_key(&state) {
-            pipelines.insert(state, raw.pipeline(&state.program()?)?);
+        if let Entry::Vacant(entry) = pipelines.entry(state) {
+            entry.insert(raw.pipeline(&state.program()?)?);
         }
     }
     raw.submit(None, |cmd| {

@@ -8,7 +8,13 @@ use std::path::PathBuf;
 ///
 /// Exit codes: 0 all passed, or was not supported; 1 something failed; 2 bad usage; 3 no suitable Vulkan device.
 #[derive(Parser)]
-#[command(name = "hullform-deqp", version, max_term_width = 100)]
+// Harnesses add options of their own behind those of their users: the last one counts.
+#[command(
+    name = "hullform-deqp",
+    version,
+    max_term_width = 100,
+    args_override_self = true
+)]
 #[command(group = ArgGroup::new("cases").multiple(false))]
 pub struct Options {
     /// Cases to run: names in which * stands for any part, with commas between

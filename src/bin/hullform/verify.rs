@@ -33,7 +33,7 @@ pub struct Arguments {
     models: Vec<PathBuf>,
     #[command(flatten)]
     shape: options::Shape,
-    /// Cases to run: a pattern such as 'scale.*' or '*.quads-*'
+    /// Cases to run: a pattern such as 'scale.*' or '*.quads-*'; 'smoke.*' is a quick part of each group
     #[arg(long, value_name = "GLOB")]
     filter: Option<String>,
     /// List the cases instead of running them

@@ -338,7 +338,7 @@ fn cells_tell_plans_and_nodes() {
         for pass in &prepared.passes {
             let cells = (0..pass.patches.len()).map(|patch| {
                 let at = |distance: f32| pass.cell(patch, Vec2::splat(distance));
-                let kinds = [0.5, 0.26, 0.126, 0.01].map(|distance| at(distance));
+                let kinds = [0.5, 0.26, 0.126, 0.01].map(at);
                 assert_eq!(at(f32::NAN), None);
                 (pass.patches[patch].plan, kinds)
             });

@@ -37,7 +37,10 @@ fn random_input_breaks_nothing() {
     let mut random = Random(7);
     while Instant::now() < end {
         one(&mut session, &mut random);
-        assert!(session.runs(), "it has ended");
+        if !session.runs() {
+            let (code, words) = session.end();
+            panic!("it has ended: {code:?} {words}");
+        }
     }
     session.hand.resize(session.window, [1100, 700]);
     session.hand.show(session.window, true);

@@ -289,6 +289,8 @@ impl Program {
             self.readings.device.add(seconds);
             self.haste.took(seconds);
         }
+        // Events tell sizes that the window's images may not have yet.
+        self.viewer.area = self.viewer.area.within(self.canvas.size());
         let drawing = self.drawing();
         let area = self.viewer.area;
         // A picture that is saved is the full one.

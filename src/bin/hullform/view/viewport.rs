@@ -29,6 +29,17 @@ impl Area {
         }
     }
 
+    /// What of it lies in a picture of `size` pixels.
+    pub fn within(self, [width, height]: [u32; 2]) -> Area {
+        let (x, y) = (self.x.min(width), self.y.min(height));
+        Area {
+            x,
+            y,
+            width: self.width.min(width - x),
+            height: self.height.min(height - y),
+        }
+    }
+
     /// Width over height.
     pub fn aspect(self) -> f64 {
         f64::from(self.width.max(1)) / f64::from(self.height.max(1))
@@ -75,6 +86,9 @@ mod tests {
             height: 90,
         };
         assert_eq!(area, expected);
+        let cut = expected.within([100, 40]);
+        assert_eq!([cut.x, cut.y, cut.width, cut.height], [20, 0, 80, 40]);
+        assert!(expected.within([0, 0]).is_empty());
         let inverted = egui::Rect::from_min_max(egui::pos2(9.0, 9.0), egui::pos2(3.0, 3.0));
         assert!(Area::of(inverted, 1.0, [100, 100]).is_empty());
     }

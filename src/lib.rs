@@ -106,6 +106,10 @@
 //! vertex, by distance, picture or curvature, or of your own. What the host decides about single patches is brought to the device by
 //! `gpu::TessellatedSurface::write_draws`, when nothing submitted uses the slot.
 //!
+//! **Decisions of the device.** With `gpu::SurfaceOptions::decides` a compute pass (`gpu::FrameSlot::cmd_decide`) decides in each frame and for each view what levels
+//! edges have, by their distance or by their pixels, and leaves out patches beyond the picture before their control points are computed: a
+//! [`frame::Decision`]. The host has nothing to do a patch, frames in flight do not wait for one another, and a frozen view can decide for another.
+//!
 //! **Misuse** is refused with [`Error::Misuse`], before anything is recorded or written: levels that are no levels, another mesh's tables,
 //! another surface's draw list, pipelines for something else, buffers that shaders cannot see, a device without the features.
 //!

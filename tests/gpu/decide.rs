@@ -48,7 +48,7 @@ fn through(eye: Vec3, at: Vec3, opening: f32, displacement: Displacement) -> Vie
 }
 
 /// Views from all around, near and far, that see all of it, some, or nothing.
-fn views(count: u32, radius: f32) -> impl Iterator<Item = View> {
+pub fn views(count: u32, radius: f32) -> impl Iterator<Item = View> {
     let spread = |i: u32, step: f32| (i as f32 * step).fract() - 0.5;
     (1..=count).map(move |i| {
         let direction = Vec3::new(spread(i, 0.618), 0.8 * spread(i, 0.414), spread(i, 0.732));
@@ -70,7 +70,7 @@ fn views(count: u32, radius: f32) -> impl Iterator<Item = View> {
     })
 }
 
-fn seen(view: &View) -> Seen {
+pub fn seen(view: &View) -> Seen {
     Seen {
         clip_from_model: view.clip_from_model,
         eye: view.eye,
@@ -111,7 +111,7 @@ fn picture(gpu: &Gpu, loaded: &mut Loaded<'_>, cut: Cut, view: View) -> (Vec<u8>
 }
 
 /// Whether two are the same levels, up to what devices may round differently; beside an n-gon that may be a whole step.
-fn are_alike(device: ([f32; 4], f32), twin: &Levels, rounds: bool) -> bool {
+pub fn are_alike(device: ([f32; 4], f32), twin: &Levels, rounds: bool) -> bool {
     let ([a, b, c, d], inside) = device;
     let given = [a, b, c, d, inside];
     let [a, b, c, d] = twin.edges;

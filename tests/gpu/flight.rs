@@ -3,8 +3,8 @@
 use ash::vk;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Backend, CachePipelines, Drawing, Fill, FrameSlot, Pipelines, Pose, Residence, SurfaceOptions,
-    Tables, View,
+    Backend, CachePipelines, DecidePipeline, Decided, Decides, Decision, Drawing, Fill, FrameSlot,
+    Metric, Pipelines, Pose, Residence, SurfaceOptions, Tables, View,
 };
 use hullform::host::Owned;
 use hullform::method::DepthTags;
@@ -12,6 +12,7 @@ use hullform::method::{Displacement, METHODS};
 use hullform::tessellation::Spacing;
 
 use crate::common::gpu::{Gpu, bits, capturing, cut, prepare};
+use crate::decide::{are_alike, seen, views};
 use crate::shapes;
 
 /// Frames in flight at once.
@@ -74,25 +75,39 @@ impl<'a> Flight<'a> {
             let allocator = &mut self.gpu.device.allocator();
             let written = self.slot.write_draws(device, allocator, tables, &list);
             written.expect("it is this slot's");
+        }
+        self.send(|cmd, slot| {
+            let drawing = Drawing {
+                tables,
+                pose,
+                slot,
+                sets: &[],
+            };
+            // SAFETY: as above.
+            unsafe {
+                let prepared = slot.cmd_prepare(device, cmd, &[view]);
+                prepared.expect("there is room for a view");
+                self.gpu.target().begin(cmd, [0.0; 4]);
+                for batch in list.batches() {
+                    let drawn = drawing.cmd_draw(device, cmd, layout, pipelines, 0..1, batch);
+                    drawn.expect("all belong together");
+                }
+                self.gpu.target().end(cmd);
+            }
+        });
+    }
+
+    /// Submits what is recorded, and the reading back; returns as soon as the queue has it.
+    fn send(&self, record: impl FnOnce(vk::CommandBuffer, &FrameSlot)) {
+        let device = self.gpu.device.raw();
+        // SAFETY: all of one live device; what used the commands before has landed.
+        unsafe {
             let once = vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT;
             let begin = vk::CommandBufferBeginInfo::default().flags(once);
             device
                 .begin_command_buffer(self.cmd, &begin)
                 .expect("begun");
-            let prepared = self.slot.cmd_prepare(device, self.cmd, &[view]);
-            prepared.expect("there is room for a view");
-            self.gpu.target().begin(self.cmd, [0.0; 4]);
-            let drawing = Drawing {
-                tables,
-                pose,
-                slot: &self.slot,
-                sets: &[],
-            };
-            for batch in list.batches() {
-                let drawn = drawing.cmd_draw(device, self.cmd, layout, pipelines, 0..1, batch);
-                drawn.expect("all belong together");
-            }
-            self.gpu.target().end(self.cmd);
+            record(self.cmd, &self.slot);
             self.slot.cmd_read_back(device, self.cmd);
             device.end_command_buffer(self.cmd).expect("ended");
             let commands = [self.cmd];
@@ -105,6 +120,12 @@ impl<'a> Flight<'a> {
 
     /// Waits for the frame, and returns what it captured.
     fn land(&mut self) -> Vec<Captured> {
+        self.wait();
+        let vertices = self.slot.captured().expect("it was read back").to_vec();
+        once_each(vertices)
+    }
+
+    fn wait(&self) {
         let device = self.gpu.device.raw();
         // SAFETY: the fence was submitted, and nothing else waits for it.
         unsafe {
@@ -112,8 +133,6 @@ impl<'a> Flight<'a> {
             waited.expect("the frame ends");
             device.reset_fences(&[self.done]).expect("reset");
         }
-        let vertices = self.slot.captured().expect("it was read back").to_vec();
-        once_each(vertices)
     }
 }
 
@@ -235,5 +254,141 @@ fn tags_change_from_frame_to_frame_without_a_wait_between() {
             }
         }
     }
+    gpu.finish();
+}
+
+/// Thirty instances, all seen from elsewhere in each frame, and two frames that the queue has at once: the device finds their levels by itself, into what each
+/// frame has of its own, and what it finds is what the twin does.
+#[test]
+fn thirty_instances_have_other_levels_in_each_frame_without_a_wait_between() {
+    const INSTANCES: u32 = 30;
+    let Some(gpu) = Gpu::open() else { return };
+    let model = shapes::built_in("hull");
+    let prepared = prepare(&model, METHODS[0].name);
+    let (device, layout) = (gpu.device.raw(), gpu.layout());
+    let deep = cut(12.0, Spacing::FractionalEven);
+    let options = SurfaceOptions {
+        residence: Residence::Cache,
+        decides: Decides::Device,
+        greatest_level: deep.level,
+        views: INSTANCES,
+        ..SurfaceOptions::default()
+    };
+    let decision = Decision {
+        metric: Metric::Distance(1.0),
+        frustum: true,
+        seen_from: None,
+    };
+    let none = vk::PipelineCache::null();
+    // SAFETY: all of one live device, here and below.
+    let (mut tables, mut pose, cached, decide) = unsafe {
+        let allocator = &mut gpu.device.allocator();
+        let tables = Tables::new(device, allocator, layout, prepared.clone(), &options);
+        let tables = Owned::new(&gpu.device, tables.expect("it fits"));
+        let positions = model.positions();
+        let pose = Pose::new(device, allocator, layout, &tables, &positions, &options);
+        let cached = CachePipelines::new(device, layout, none, &prepared);
+        let decide = DecidePipeline::new(device, layout, none);
+        (
+            tables,
+            Owned::new(&gpu.device, pose.expect("it fits")),
+            Owned::new(
+                &gpu.device,
+                cached.expect("the shipped modules make pipelines"),
+            ),
+            Owned::new(
+                &gpu.device,
+                decide.expect("the shipped module makes a pipeline"),
+            ),
+        )
+    };
+    let flights: Vec<Flight<'_>> = (0..SLOTS)
+        .map(|_| {
+            // SAFETY: as above.
+            let slot = unsafe {
+                let allocator = &mut gpu.device.allocator();
+                let slot = FrameSlot::new(device, allocator, layout, &tables, &[], options);
+                Owned::new(&gpu.device, slot.expect("it fits"))
+            };
+            Flight::new(&gpu, slot)
+        })
+        .collect();
+    let list = flights[0]
+        .slot
+        .draw_list(&tables, deep, None)
+        .expect("a cut");
+    // SAFETY: recording on the device that made everything, outside of a render pass.
+    let uploaded = gpu.device.submit(|cmd| unsafe {
+        tables.cmd_upload(device, cmd);
+        pose.cmd_upload(device, cmd);
+        pose.cmd_cache(device, cmd, layout, &cached, &tables, &list)
+    });
+    uploaded.expect("it is executed");
+    let makers = (Backend::Tessellator, Residence::Cache);
+    let compare = vk::CompareOp::LESS_OR_EQUAL;
+    let pipelines = gpu.build(&prepared, makers, deep.spacing, Fill::Discard, compare);
+    let (tables, pose, positions) = (&*tables, &*pose, model.positions());
+    let of_frame = |frame: usize| -> Vec<View> {
+        let all = views((FRAMES as u32 + 1) * INSTANCES, 1.0);
+        all.skip(frame * INSTANCES as usize)
+            .take(INSTANCES as usize)
+            .collect()
+    };
+    for frame in 0..FRAMES + SLOTS {
+        let flight = &flights[frame % SLOTS];
+        if frame >= SLOTS {
+            flight.wait();
+            for (number, view) in (0..).zip(of_frame(frame - SLOTS)) {
+                for (pass, patches) in prepared.passes.iter().enumerate() {
+                    for (patch, record) in flight.slot.decided(pass, number).iter().enumerate() {
+                        let outline = &prepared.outline;
+                        let twin = decision.levels(
+                            outline,
+                            patches,
+                            patch,
+                            &positions,
+                            deep,
+                            &seen(&view),
+                        );
+                        let twin = twin.expect("there is such a patch");
+                        assert!(
+                            are_alike((record.edges, record.inside), &twin, true),
+                            "{frame} {number} {patch}"
+                        );
+                    }
+                }
+            }
+        }
+        if frame < FRAMES {
+            flight.send(|cmd, slot| {
+                let drawing = Drawing {
+                    tables,
+                    pose,
+                    slot,
+                    sets: &[],
+                };
+                let decided = Decided {
+                    views: 0..INSTANCES,
+                    eyes: 1,
+                };
+                let on = (tables, pose);
+                // SAFETY: all of one live device, in the order that the calls ask for.
+                unsafe {
+                    slot.cmd_prepare(device, cmd, &of_frame(frame))
+                        .expect("there is room");
+                    slot.cmd_decide(device, cmd, layout, &decide, on, &list, &decision, &decided)
+                        .expect("the device decides");
+                    gpu.target().begin(cmd, [0.0; 4]);
+                    for batch in list.batches() {
+                        let views = 0..INSTANCES;
+                        let drawn = drawing.cmd_draw(device, cmd, layout, &pipelines, views, batch);
+                        drawn.expect("all belong together");
+                    }
+                    gpu.target().end(cmd);
+                }
+            });
+        }
+    }
+    drop((flights, pipelines, cached, decide));
     gpu.finish();
 }

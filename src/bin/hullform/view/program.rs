@@ -223,7 +223,7 @@ impl Program {
             && self.haste.left().is_none()
             && !self.undrawn
             && !self.live.running
-            && !(self.live.due && !self.stage.parts.is_empty())
+            && (!self.live.due || self.stage.parts.is_empty())
     }
 
     /// Runs the panels on what came in. What a button of the mouse does stands between what came before it and what after: else a drag that begins

@@ -37,6 +37,7 @@ fn all_modules() -> Vec<(String, Vec<u8>)> {
 fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static str> {
     match block {
         Block::PushConstants if module.starts_with("points.comp") => Some("PointStep"),
+        Block::PushConstants if module.starts_with("decide.comp") => Some("Decision"),
         Block::PushConstants => Some("Frame"),
         Block::Buffer { binding } => match binding {
             abi::BINDING_TABLES => in_tables(shape),
@@ -53,15 +54,25 @@ fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static s
     }
 }
 
-/// The struct of a table, of all that are in one buffer. No two are of one size but `Patch` and `Use`, which are five words each.
+/// The struct of a table, of all that are in one buffer. No two are of one size and as many members but `Patch` and `Use`, which are five words each.
 fn in_tables(shape: &Shape) -> Option<&'static str> {
     let (stride, inner) = inner(shape);
-    inner?;
-    let names = ["Patch", "Node", "Border", "Ends", "TableFace", "TablePlace"];
+    let count = inner?.offsets.len();
+    let names = [
+        "Patch",
+        "PatchSides",
+        "Node",
+        "Border",
+        "Ends",
+        "TableFace",
+        "TablePlace",
+    ];
     let size = |name: &str| abi::LAYOUTS.iter().find(|(own, _, _)| *own == name);
-    let found = names
-        .into_iter()
-        .find(|name| size(name).is_some_and(|&(_, size, _)| stride == Some(size as u32)));
+    let found = names.into_iter().find(|name| {
+        size(name).is_some_and(|&(_, size, members)| {
+            stride == Some(size as u32) && members.len() == count
+        })
+    });
     Some(found.expect("a table's elements have the size of a struct"))
 }
 

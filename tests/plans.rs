@@ -337,20 +337,27 @@ fn cells_tell_plans_and_nodes() {
             .expect("sound options");
         for pass in &prepared.passes {
             let cells = (0..pass.patches.len()).map(|patch| {
-                let at = |distance: f32| pass.cell(patch, Vec2::splat(distance));
-                let kinds = [0.5, 0.26, 0.126, 0.01].map(at);
-                assert_eq!(at(f32::NAN), None);
-                (pass.patches[patch].plan, kinds)
+                let at = |u: f32, v: f32| pass.cell(patch, Vec2::new(u, v));
+                assert_eq!(at(f32::NAN, 0.5), None);
+                // From the middle to each corner.
+                let to = |corner: [f32; 2]| {
+                    [0.5, 0.26, 0.126, 0.01].map(|t: f32| {
+                        let [u, v] = corner.map(|end| t + end * (1.0 - 2.0 * t));
+                        at(u, v)
+                    })
+                };
+                let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(to);
+                (pass.patches[patch].plan, corners)
             });
             let cells: Vec<_> = cells.collect();
             assert_eq!(pass.cell(cells.len(), Vec2::ZERO), None);
             for (plan, cell) in &cells {
                 let same = cells.iter().filter(|(other, _)| other == plan);
-                assert!(same.clone().all(|(_, other)| other[0] == cell[0]));
+                assert!(same.clone().all(|(_, other)| other[0][0] == cell[0][0]));
             }
             let numbers: std::collections::BTreeSet<u32> = cells
                 .iter()
-                .filter_map(|(_, cell)| Some(cell[0]?.plan))
+                .filter_map(|(_, cell)| Some(cell[0][0]?.plan))
                 .collect();
             assert!(numbers.iter().copied().eq(0..numbers.len() as u32));
             plans += numbers.len();
@@ -359,7 +366,7 @@ fn cells_tell_plans_and_nodes() {
                 let depths: Vec<u32> = depths.collect();
                 depths.is_sorted() && depths.last() > Some(&5)
             };
-            let irregular = cells.iter().any(|(_, cell)| deeper(cell));
+            let irregular = cells.iter().any(|(_, cell)| cell.iter().any(deeper));
             assert_eq!(irregular, !numbers.is_empty(), "{}", pass.shader);
         }
     }

@@ -48,6 +48,7 @@
 mod bft;
 mod cached;
 mod cell;
+#[cfg(feature = "vulkan")]
 mod deciding;
 mod displacement;
 mod flat;

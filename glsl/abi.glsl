@@ -40,6 +40,8 @@ const uint BINDING_INSTANCES = 10u;
 const uint BINDING_VIEWS = 11u;
 // How many tables a method may have of its own.
 const uint TABLES = 8u;
+// Behind these, how many tables control points have that are cached.
+const uint CACHED_TABLES = 3u;
 // Step of points: positions are sums of weighted control vertices.
 const uint POINTS_BLEND = 0u;
 // Step of points: the same, and normals are perpendicular to two more such sums, the tangents.

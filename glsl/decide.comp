@@ -7,6 +7,7 @@
 // A level depends on the edge alone, whose ends are the same numbers in the same order for both patches there: so both have the same bits.
 
 #include "abi.glsl"
+#include "lib/half_level.glsl"
 
 layout(local_size_x = DECIDE_INVOCATIONS) in;
 
@@ -54,11 +55,11 @@ float level_of_ends(uint seen, vec3 a, vec3 b) {
 
 // The level of a side of a patch: of its edge, or the greatest of its face's edges; in all views that are drawn together.
 float level_of_side(uint list, uint seen, uint eyes) {
-    uint place = bases.own[TABLES + 4u] + list;
+    uint place = bases.own[TABLES + CACHED_TABLES + 1u] + list;
     uint count = words[place];
-    bool fractional_even = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u;
-    float greatest = fractional_even ? 2.0 : 1.0;
-    if ((decision.flags & (DECIDE_DISTANCE | DECIDE_SCREEN)) == 0u) return max(greatest, decision.level);
+    // The greatest is no less than the least.
+    if ((decision.flags & (DECIDE_DISTANCE | DECIDE_SCREEN)) == 0u) return decision.level;
+    float greatest = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u ? 2.0 : 1.0;
     uint edges = count == 2u ? 1u : count;
     for (uint i = 0u; i < edges * eyes; ++i) {
         uint edge = i % edges;
@@ -68,7 +69,7 @@ float level_of_side(uint list, uint seen, uint eyes) {
         // What is no number is no level.
         if (level > greatest) greatest = level;
     }
-    return min(greatest, max(decision.level, fractional_even ? 2.0 : 1.0));
+    return min(greatest, decision.level);
 }
 
 // Whether all vertices are outside of one side of the picture, by a thousandth of it and by what displacement and rounding can be.
@@ -94,13 +95,6 @@ bool is_outside(Patch record, uint hull, uint seen) {
     return false;
 }
 
-// Half of an edge beside an n-gon, as `patch_levels` has it.
-float half_of(float level) {
-    bool fractional_even = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u;
-    precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
-    return half_level;
-}
-
 void main() {
     uint number = gl_GlobalInvocationID.x;
     if (number >= bases.patches) return;
@@ -108,18 +102,20 @@ void main() {
     uint offset = gl_GlobalInvocationID.y * eyes;
     uint seen = decision.seen + offset;
     Patch record = patches[number];
-    PatchSides sides = patch_sides[bases.own[TABLES + 3u] + number];
+    PatchSides sides = patch_sides[bases.own[TABLES + CACHED_TABLES] + number];
     bool drawn = (decision.flags & DECIDE_FRUSTUM) == 0u || sides.hull == 0u;
     for (uint eye = 0u; eye < eyes && !drawn; ++eye) drawn = !is_outside(record, sides.hull, seen + eye);
     vec4 edges = vec4(0.0);
     float inside = 0.0;
     if (drawn) {
+        bool fractional_even = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u;
         bool is_half = (record.flags & PATCH_HALF) != 0u;
         for (uint i = 0u; i < 4u; ++i) {
             float level = level_of_side(sides.sides[i], seen, eyes);
             bool even = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u;
-            edges[i] = is_half ? half_of(level) : even ? 2.0 * half_of(level) : level;
-            inside = max(inside, is_half ? half_of(level) : level);
+            float halved = half_level(level, fractional_even);
+            edges[i] = is_half ? halved : even ? 2.0 * halved : level;
+            inside = max(inside, is_half ? halved : level);
         }
     }
     for (uint eye = 0u; eye < eyes; ++eye) {

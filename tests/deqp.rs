@@ -305,12 +305,3 @@ fn deqp_runner_finds_what_verify_finds() {
         under_runner("coordinates.isolines-*", Some("wrong:*-equal.*"));
     }
 }
-
-/// `cargo test --test deqp -- --ignored`: takes the suite's time three times.
-#[test]
-#[ignore = "takes a quarter of an hour"]
-fn deqp_runner_finds_what_verify_finds_in_the_whole_suite() {
-    if has_runner() {
-        under_runner("*", None);
-    }
-}

@@ -2,6 +2,7 @@
 #ifndef LEVELS_GLSL
 #define LEVELS_GLSL
 
+#include "lib/half_level.glsl"
 #include "lib/interface.glsl"
 
 // Levels of the edges from corner i to corner i + 1, and of the inside.
@@ -21,13 +22,12 @@ Levels patch_levels(uint number, uint view, Patch record) {
         return Levels(draw.edges, draw.inside);
     }
     float level = clamp(frame.level, 1.0, 64.0);
-    bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
-    precise float half_level = fractional_even ? 2.0 * ceil(level * 0.25) : ceil(level * 0.5);
-    if ((record.flags & PATCH_HALF) != 0u) return Levels(vec4(half_level), half_level);
+    precise float halved = half_level(level, (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u);
+    if ((record.flags & PATCH_HALF) != 0u) return Levels(vec4(halved), halved);
     precise vec4 edges;
     for (uint i = 0u; i < 4u; ++i) {
         bool even = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u;
-        edges[i] = even ? 2.0 * half_level : level;
+        edges[i] = even ? 2.0 * halved : level;
     }
     return Levels(edges, level);
 }

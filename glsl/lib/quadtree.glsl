@@ -45,9 +45,8 @@ StencilRow stencil_row(uint number, uint size) {
 #ifndef LONG_RINGS
     uint word = bases.own[4] + (found.pattern >> 3u);
     found.pattern &= 7u;
-    found.first_words = uvec4(0u);
     found.last_words = uvec4(0u);
-    // Most have four at most. Behind the last there are other tables.
+    // Few have more than four. Behind the last pattern there are other tables.
     found.first_words = uvec4(patterns[word], patterns[word + 1u], patterns[word + 2u], patterns[word + 3u]);
     if (found.pattern + (size << found.width) > 32u) {
         found.last_words = uvec4(patterns[word + 4u], patterns[word + 5u], patterns[word + 6u], patterns[word + 7u]);
@@ -125,8 +124,7 @@ Leaf find_leaf(uint root, vec2 from) {
     uint points = nodes[number].points;
     precise float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
-    uint depth = 0u;
-    if ((kind_word & 15u) == NODE_INTERNAL) do {
+    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL; ++depth) {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);
@@ -134,7 +132,7 @@ Leaf find_leaf(uint root, vec2 from) {
         number = bases.own[0] + points + uint(half_plane.x) + 2u * uint(half_plane.y);
         kind_word = nodes[number].kind;
         points = nodes[number].points;
-    } while (++depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL);
+    }
     uint kind = kind_word & 15u;
     uint place = kind_word >> 4u & 15u;
     uint base = kind_word >> NODE_BASE_SHIFT & 15u;

@@ -53,7 +53,7 @@ pub struct Seen {
 }
 
 impl Decision {
-    /// As shaders have it: views from `view` on are decided for, those from `seen` on decided by. `level` is the greatest.
+    /// As shaders have it, for views from `view` on, of which `eyes` are decided for together.
     #[cfg(feature = "vulkan")]
     pub(crate) fn record(&self, view: u32, eyes: u32, cut: Cut, max_level: u32) -> abi::Decision {
         let (metric, measure, size) = match self.metric {

@@ -1,6 +1,7 @@
 //! Deciding about patches on the device: their levels, and which are not drawn.
 
 use std::ops::Range;
+use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
 
 use ash::vk;
@@ -154,5 +155,26 @@ impl FrameSlot {
             Some(given) => Err(Error::Misuse(Misuse::Measure { given })),
             None => Ok(()),
         }
+    }
+
+    /// Says at which cut, and up to which view, the device has decided.
+    pub(super) fn set_decided(&self, list: &DrawList, end: u32) {
+        let mut decided = self.decided.lock().unwrap_or_else(PoisonError::into_inner);
+        let end = match *decided {
+            Some((cut, known)) if cut == list.cut() => known.max(end),
+            _ => end,
+        };
+        *decided = Some((list.cut(), end));
+    }
+
+    /// # Errors
+    /// [`Misuse::NotDecided`] where the device decides, and has not yet.
+    pub(super) fn check_decided(&self, views: &Range<u32>, list: &DrawList) -> Result<()> {
+        let decided = *self.decided.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = decided.is_some_and(|(cut, end)| cut == list.cut() && views.end <= end);
+        if known || self.options().decides == Decides::Host {
+            return Ok(());
+        }
+        Err(Error::Misuse(Misuse::NotDecided))
     }
 }

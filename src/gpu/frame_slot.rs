@@ -65,7 +65,7 @@ pub struct FrameSlot {
     /// The views that `cmd_prepare` was given last.
     pub(super) views: AtomicU32,
     /// At which cut the device has decided since then, and the view behind the last.
-    decided: Mutex<Option<(Cut, u32)>>,
+    pub(super) decided: Mutex<Option<(Cut, u32)>>,
 }
 
 impl FrameSlot {
@@ -354,27 +354,6 @@ impl FrameSlot {
         self.views.store(count, Ordering::Relaxed);
         *self.decided.lock().unwrap_or_else(PoisonError::into_inner) = None;
         Ok(())
-    }
-
-    /// Says at which cut, and up to which view, the device has decided.
-    pub(super) fn set_decided(&self, list: &DrawList, end: u32) {
-        let mut decided = self.decided.lock().unwrap_or_else(PoisonError::into_inner);
-        let end = match *decided {
-            Some((cut, known)) if cut == list.cut() => known.max(end),
-            _ => end,
-        };
-        *decided = Some((list.cut(), end));
-    }
-
-    /// # Errors
-    /// [`Misuse::NotDecided`] where the device decides, and has not yet.
-    pub(super) fn check_decided(&self, views: &Range<u32>, list: &DrawList) -> Result<()> {
-        let decided = *self.decided.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = decided.is_some_and(|(cut, end)| cut == list.cut() && views.end <= end);
-        if known || self.options.decides == Decides::Host {
-            return Ok(());
-        }
-        Err(Error::Misuse(Misuse::NotDecided))
     }
 
     /// What the device decided about the patches of a pass in a view; empty where the host decides, or there is no such pass or view. Meaningful when

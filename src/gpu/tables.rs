@@ -15,9 +15,6 @@ use crate::method::{CachedPoints, Prepared, Table, deciding_tables};
 /// `minUniformBufferOffsetAlignment`).
 const BASES_STRIDE: u64 = 256;
 
-/// The tables of control points that are cached; behind these are those of decisions.
-const CACHED_TABLES: usize = 3;
-
 /// What a method made of a topology, on the device. It borrows nothing; the owner calls [`Tables::destroy`].
 ///
 /// Poses and frame slots are made for it; any number of them is drawn with the same tables.
@@ -113,7 +110,8 @@ impl Tables {
             let others = cached.map(|cached| std::mem::take(&mut cached.tables));
             let mut others = others.unwrap_or_default();
             if decides == Decides::Device {
-                others.resize(CACHED_TABLES, Table::default());
+                // Behind those of control points that are cached, be there any or not.
+                others.resize(abi::CACHED_TABLES as usize, Table::default());
                 others.extend(deciding_tables(&prepared.outline, pass));
             }
             let (words, bases) = pass.packed(&others);

@@ -1,5 +1,6 @@
 //! A device with a picture to draw into: where surfaces are loaded, drawn, captured and measured by whoever has no engine.
 
+mod frame;
 mod loaded;
 
 use std::cell::RefCell;
@@ -16,7 +17,8 @@ use crate::host::{Device, OffscreenTarget, Owned, PipelineCache, StatisticsQuery
 use crate::method::Prepared;
 use crate::tessellation::Spacing;
 
-pub use loaded::{Frame, Loaded, vertex_bits, vertex_key};
+pub use frame::{Frame, vertex_bits, vertex_key};
+pub use loaded::Loaded;
 
 /// A device, a target, and what surfaces share there: their layouts, and the pipelines, which take long to build and are built once.
 ///

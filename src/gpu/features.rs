@@ -3,10 +3,17 @@
 //! An engine asks [`Support::query`] whether a device will do and lets [`FeatureChain`] set the features when it creates the
 //! device, or sets them in structs of its own with [`Support::require`].
 
+pub(crate) mod extension;
+mod extra;
+
 use ash::{khr, vk};
 
 use crate::error::{Error, Misuse, Result};
+use crate::gpu::features::extension::has_extension;
 use crate::gpu::sets::STORAGE_BUFFERS;
+
+use extra::ExtraChain;
+pub use extra::ExtraFeatures;
 
 /// Features that we use where they exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,18 +34,6 @@ pub struct OptionalFeatures {
     pub dynamic_rendering: bool,
     /// `maintenance4`, from Vulkan 1.3 or `VK_KHR_maintenance4`: shader interfaces of unequal width may be linked.
     pub maintenance4: bool,
-}
-
-/// Features that are there on request: our own shaders use none of them, the conformance suite does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExtraFeatures {
-    /// Reads and writes beyond a buffer's end do no harm (`robustBufferAccess`). Every device has it; some are slower with it.
-    pub robust_buffer_access: bool,
-    /// Shaders may speak the Vulkan memory model (`vulkanMemoryModel`), for atomic operations as well (`vulkanMemoryModelDeviceScope`).
-    ///
-    /// With the first of the two alone our shaders are not valid: their atomic operations have device scope
-    /// (VUID-RuntimeSpirv-vulkanMemoryModel-06265).
-    pub vulkan_memory_model: bool,
 }
 
 /// The proof that a device was created with the features that our shaders need, and which of the optional ones it has.
@@ -102,8 +97,8 @@ pub struct Support {
     pub max_storage_buffer_range: u32,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
-    /// Whether [`ExtraFeatures::vulkan_memory_model`] can be asked for.
-    pub vulkan_memory_model: bool,
+    /// What can be asked for beyond that.
+    pub extra: ExtraFeatures,
     /// `maintenance4` comes from an extension that has to be named, as the device is below Vulkan 1.3.
     pub maintenance4_by_extension: bool,
 }
@@ -244,15 +239,13 @@ impl Support {
     /// As [`Support::query`].
     unsafe fn query_features(&mut self, instance: &ash::Instance, physical: vk::PhysicalDevice) {
         let mut scalar = vk::PhysicalDeviceScalarBlockLayoutFeatures::default();
-        let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
         let mut maintenance4 = vk::PhysicalDeviceMaintenance4Features::default();
         let mut multiview = vk::PhysicalDeviceMultiviewFeatures::default();
         let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
         let mut features = vk::PhysicalDeviceFeatures2::default();
         // Structs from beyond the device's version stay out of the chain: nobody would fill them in.
         if self.api_version >= vk::API_VERSION_1_2 {
-            features = features.push_next(&mut scalar).push_next(&mut model);
-            features = features.push_next(&mut multiview);
+            features = features.push_next(&mut scalar).push_next(&mut multiview);
         }
         let core13 = self.api_version >= vk::API_VERSION_1_3;
         // SAFETY: the caller's instance and physical device. One that fails to answer goes without: we can do without.
@@ -281,8 +274,8 @@ impl Support {
             dynamic_rendering: rendering.dynamic_rendering != 0,
             maintenance4: maintenance4.maintenance4 != 0,
         };
-        self.vulkan_memory_model =
-            model.vulkan_memory_model != 0 && model.vulkan_memory_model_device_scope != 0;
+        // SAFETY: the caller's.
+        self.extra = unsafe { ExtraFeatures::query(instance, physical, self.api_version) };
         self.maintenance4_by_extension = by_extension && self.optional.maintenance4;
     }
 }
@@ -295,6 +288,7 @@ pub struct FeatureChain {
     multiview: vk::PhysicalDeviceMultiviewFeatures<'static>,
     maintenance4: Option<vk::PhysicalDeviceMaintenance4Features<'static>>,
     rendering: Option<vk::PhysicalDeviceDynamicRenderingFeatures<'static>>,
+    extra: ExtraChain,
 }
 
 impl FeatureChain {
@@ -317,15 +311,14 @@ impl FeatureChain {
             multiview,
             maintenance4: support.optional.maintenance4.then_some(maintenance4),
             rendering: support.optional.dynamic_rendering.then_some(rendering),
+            extra: ExtraChain::default(),
         }
     }
 
     /// Switches on what is asked for beyond that; the device must have it.
     pub fn with(mut self, extra: ExtraFeatures) -> FeatureChain {
-        self.core.features.robust_buffer_access |= vk::Bool32::from(extra.robust_buffer_access);
-        let model = vk::Bool32::from(extra.vulkan_memory_model);
-        self.vulkan12.vulkan_memory_model |= model;
-        self.vulkan12.vulkan_memory_model_device_scope |= model;
+        extra.switch_on(&mut self.core.features, &mut self.vulkan12);
+        self.extra = ExtraChain::new(extra);
         self
     }
 
@@ -345,7 +338,7 @@ impl FeatureChain {
     /// Chains the structs to `info`.
     ///
     /// # Safety
-    /// The device's [`Support::missing`] is empty and [`Support::extensions`] are enabled in `info`. `info` has no
+    /// The device's [`Support::missing`] is empty; [`Support::extensions`], and [`ExtraFeatures::extensions`] of what was asked for, are enabled in `info`. `info` has no
     /// `pEnabledFeatures` (VUID-VkDeviceCreateInfo-pNext-00373), and none of `VkPhysicalDeviceFeatures2`,
     /// `VkPhysicalDeviceVulkan12Features` (nor a struct that it contains, VUID-VkDeviceCreateInfo-pNext-02830),
     /// `VkPhysicalDeviceMultiviewFeatures`, `VkPhysicalDeviceVulkan11Features`, `VkPhysicalDeviceMaintenance4Features`,
@@ -361,28 +354,9 @@ impl FeatureChain {
         if let Some(rendering) = &mut self.rendering {
             info = info.push_next(rendering);
         }
-        info = info.push_next(&mut self.multiview);
+        info = self.extra.chain(info).push_next(&mut self.multiview);
         info.push_next(&mut self.vulkan12).push_next(&mut self.core)
     }
-}
-
-/// Whether `physical` has the device extension `name`.
-///
-/// # Errors
-/// What `vkEnumerateDeviceExtensionProperties` returns.
-///
-/// # Safety
-/// `physical` belongs to the live `instance`.
-pub(crate) unsafe fn has_extension(
-    instance: &ash::Instance,
-    physical: vk::PhysicalDevice,
-    name: &std::ffi::CStr,
-) -> std::result::Result<bool, vk::Result> {
-    // SAFETY: the caller's instance and physical device.
-    let all = unsafe { instance.enumerate_device_extension_properties(physical) }?;
-    let named =
-        |extension: &vk::ExtensionProperties| extension.extension_name_as_c_str() == Ok(name);
-    Ok(all.iter().any(named))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A logical device with one queue and an allocator.
 
 use crate::error::{Error, Result};
-use crate::gpu::features::has_extension;
+use crate::gpu::features::extension::has_extension;
 use crate::gpu::{Enabled, ExtraFeatures, FeatureChain, failed};
 use crate::host::Instance;
 use crate::host::choice::{DeviceInfo, choose, devices};
@@ -31,6 +31,7 @@ struct Shared {
     /// Locked while something is submitted: a queue is for one thread at a time.
     queue: Mutex<vk::Queue>,
     info: DeviceInfo,
+    extra: ExtraFeatures,
     hung: AtomicBool,
     logical: Logical,
 }
@@ -117,6 +118,7 @@ impl Device {
             allocator: Mutex::new(allocator.map_err(crate::gpu::memory::out_of_memory)?),
             queue: Mutex::new(queue),
             info,
+            extra,
             hung: AtomicBool::new(false),
             logical,
         })))
@@ -141,6 +143,11 @@ impl Device {
     pub fn enabled(&self) -> Enabled {
         let enabled = FeatureChain::new(&self.0.info.support).enabled();
         enabled.expect("only a device that lacks nothing is opened, with this chain")
+    }
+
+    /// What it was opened with beyond that.
+    pub fn extra(&self) -> ExtraFeatures {
+        self.0.extra
     }
 
     /// Its limits.
@@ -348,6 +355,7 @@ fn create(
     wanted: &[&'static CStr],
 ) -> Result<ash::Device> {
     let mut extensions = info.support.extensions();
+    extensions.extend(extra.extensions());
     extensions.extend(wanted);
     // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
     let subset = khr::portability_subset::NAME;

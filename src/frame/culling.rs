@@ -184,7 +184,7 @@ fn cone(vectors: [Vec3; 12], slant: f32) -> Option<(Vec3, f32)> {
         let across = (vector - along * axis).length() + slant;
         let rest = along - slant;
         // Not what is no number.
-        if !(rest > 0.0) {
+        if rest.is_nan() || rest <= 0.0 {
             return None;
         }
         tangent = tangent.max(across / rest);

@@ -2,11 +2,14 @@
 
 use glam::{BVec3, Mat4, Vec3, Vec4, Vec4Swizzles};
 
+#[cfg(feature = "vulkan")]
 use crate::abi;
 use crate::frame::culling::{Culled, is_back, is_outside, is_small};
 use crate::frame::{Cut, Seen};
 use crate::method::{Outline, Pass};
-use crate::tessellation::{Levels, Spacing, levels_of_edges};
+#[cfg(feature = "vulkan")]
+use crate::tessellation::Spacing;
+use crate::tessellation::{Levels, levels_of_edges};
 
 /// By what the device decides about patches, in each view by itself. A level belongs to an edge of the mesh and depends on nothing but its ends, so both
 /// sides agree to the bit; where levels are not whole, spacing is fractional and nothing pops.

@@ -7,6 +7,7 @@ mod camera;
 mod capture;
 mod compare;
 mod db;
+mod deciding;
 mod devices;
 mod drawing;
 mod evaluation;

@@ -263,19 +263,27 @@ impl Loaded<'_> {
         after: impl FnOnce(vk::CommandBuffer),
     ) -> Result<Option<[u64; 3]>> {
         let target = self.bench.target();
-        // llvmpipe (Mesa 22.3.6) ends the process where a query of statistics comes behind a dispatch in the same submission.
         let query = self.bench.statistics.as_ref();
-        let query = query.filter(|_| self.decide_pipeline.is_none());
         let views = shots
             .iter()
             .flat_map(|shot| vec![shot.view; shot.instances as usize]);
         let views: Vec<View> = views.collect();
         let device = self.bench.device();
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-        device.submit(|cmd| unsafe {
+        let prepare = |cmd| unsafe {
             before(cmd);
             self.surface.cmd_prepare(device.raw(), cmd, &views)?;
-            self.cmd_decide(cmd, shots)?;
+            self.cmd_decide(cmd, shots)
+        };
+        // llvmpipe (Mesa 22.3.6) ends the process where a query of statistics comes behind a dispatch in the same submission.
+        let apart = query.is_some() && self.decide_pipeline.is_some();
+        let mut prepare = Some(prepare);
+        if let Some(prepare) = prepare.take_if(|_| apart) {
+            device.submit(prepare)?;
+        }
+        // SAFETY: as above.
+        device.submit(|cmd| unsafe {
+            prepare.map_or(Ok(()), |prepare| prepare(cmd))?;
             if let Some(query) = query {
                 query.cmd_reset(cmd);
             }

@@ -7,15 +7,17 @@ mod subject;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hullform::gpu::{Backend, Residence};
+use hullform::gpu::{Backend, Decides, Residence};
 use hullform::mesh::Model;
 use hullform::method::{METHODS, Method, Prepared, Reproduces, method};
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 
+use crate::adaptive::Adaptive;
+use crate::deciding::Wanted;
 use crate::drawing;
 use crate::gpu::Gpu;
-use crate::options::{self, Chosen, Global, Json};
+use crate::options::{self, Chosen, Global, Json, Size};
 use crate::output::{self, Contents};
 use crate::{model, print, print_json, progress};
 use row::Row;
@@ -74,6 +76,20 @@ pub struct Arguments {
     /// How many instances each pass draws: all in one draw of a batch, but one by one where control points are in the ring
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1024))]
     instances: u32,
+    /// Levels of their own for edges, up to each of --levels, decided by the device in each frame: `distance[:UNITS]`, `screen[:PIXELS]` or
+    /// `curvature[:DEGREES]`, as for `render`
+    #[arg(long, value_name = "HOW")]
+    adaptive: Option<Adaptive>,
+    /// Leave patches out before anything of them is computed, one or several: `frustum` outside of the picture, `back` that show nothing but their
+    /// backs, `small` between samples, one a pixel, `all` of these, or `none`
+    #[arg(long, value_name = "A,B,...", default_value = "none")]
+    cull: options::Culling,
+    /// Size, in pixels, of the picture that --adaptive and --cull go by
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    size: Size,
+    /// From where they see it
+    #[command(flatten)]
+    sight: options::Sight,
     /// Frames that are measured of each, all in turn; one more warms up
     #[arg(long, value_name = "N", default_value = "20", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     frames: u32,
@@ -88,8 +104,41 @@ pub struct Arguments {
     plot: Option<PathBuf>,
 }
 
+impl Arguments {
+    /// What is to be decided about patches.
+    fn wanted(&self) -> Wanted {
+        Wanted {
+            adaptive: self.adaptive,
+            culling: self.cull,
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Option`] for decisions that nobody takes.
+    fn check(&self, global: &Global) -> Result<()> {
+        let slots = drawing::slots(global.slots);
+        let wanted = self.wanted();
+        let decides = |backend| wanted.decides(backend, slots);
+        let all: Result<Vec<Decides>> = self.backend.iter().map(|&b| decides(b.into())).collect();
+        if wanted.is_anything() && all?.contains(&Decides::Host) {
+            return Err(Error::Option {
+                option: if self.adaptive.is_some() {
+                    "--adaptive"
+                } else {
+                    "--cull"
+                },
+                problem: "the device decides for the tessellator alone, and with slots by counters"
+                    .into(),
+                remedy: "leave out --backend and --slots, or decisions".into(),
+            });
+        }
+        Ok(())
+    }
+}
+
 /// Measures, prints a table, and writes what is asked for.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    arguments.check(global)?;
     let reads: Vec<&Path> = arguments
         .models
         .iter()

@@ -272,10 +272,9 @@ impl Topology {
     fn edges_at(&self, face: u32, vertex: u32) -> [u32; 2] {
         let corner = self.corner_of(face, vertex) as usize;
         let edges = self.face_edges(face);
-        [
-            edges[corner],
-            edges[(corner + edges.len() - 1) % edges.len()],
-        ]
+        // Without a division: walks ask this at every step.
+        let before = if corner == 0 { edges.len() } else { corner } - 1;
+        [edges[corner], edges[before]]
     }
 
     /// The corner at which `face`, which must have it, has `vertex`.

@@ -27,8 +27,7 @@ use crate::method::patches::{self, Part};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
 use crate::plan::database::Kind;
 use crate::plan::{
-    Configuration, Database, NodeKind, PackedPlans, Plan, PlanOptions, Ring, SmoothQuads,
-    SmoothRing, SmoothStart,
+    Database, NodeKind, PackedPlans, Plan, PlanOptions, Ring, SmoothQuads, SmoothRing, SmoothStart,
 };
 use crate::tessellation::Domain;
 
@@ -38,7 +37,7 @@ pub(crate) use twin::node_kind;
 
 use irregular::{Irregulars, Record, order, push_ring};
 use plain::is_turned_corner;
-use subjects::Planned;
+use subjects::Wanted;
 
 /// The row of the table.
 pub const METHOD: Method = Method {
@@ -112,6 +111,26 @@ const AT_A_TIME: usize = 1 << 13;
 /// Most short rings and their orders take less.
 const RING: usize = 36;
 
+/// How many of the parts are looked at in parallel before what they show is kept once: fewer where much is around them.
+fn some(topology: &Topology, parts: &[Part]) -> usize {
+    let around = |part: &Part| match topology.face(part.face) {
+        quad @ [_, _, _, _] => {
+            let faces = quad
+                .iter()
+                .map(|&vertex| topology.vertex_faces(vertex).len());
+            faces.sum()
+        }
+        face => face.len(),
+    };
+    let mut total = 0;
+    let fit = parts.iter().take(AT_A_TIME).take_while(|part| {
+        let before = total;
+        total += around(part);
+        before < 16 * AT_A_TIME
+    });
+    fit.count()
+}
+
 /// Makes room for patches of so many control vertices.
 fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
     pass.patches.reserve_exact(patches);
@@ -135,7 +154,10 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     reserve(&mut regular, regular_count, 16);
     reserve(&mut short.pass, parts.len() - regular_count, RING);
     let mut all = Vec::with_capacity(AT_A_TIME.min(parts.len()));
-    for parts in parts.chunks(AT_A_TIME) {
+    let mut rest = &parts[..];
+    while !rest.is_empty() {
+        let parts;
+        (parts, rest) = rest.split_at(some(model.topology(), rest));
         let found = parts.par_iter().map(|&part| found(model, &smooth, part));
         found.collect_into_vec(&mut all);
         for (&part, found) in parts.iter().zip(all.drain(..)) {
@@ -230,7 +252,7 @@ fn surroundings(topology: &Topology, smooth: &SmoothQuads<'_>, part: Part) -> Su
 struct Planning {
     pass: Pass,
     records: Vec<Record>,
-    numbers: FxHashMap<Configuration, u32>,
+    wanted: Wanted,
     /// Those of smooth rings, by their keys.
     smooth: FxHashMap<u32, u32>,
 }
@@ -240,7 +262,7 @@ impl Planning {
         Planning {
             pass: pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options),
             records: Vec::new(),
-            numbers: FxHashMap::default(),
+            wanted: Wanted::default(),
             smooth: FxHashMap::default(),
         }
     }
@@ -257,8 +279,7 @@ impl Planning {
         patch.controls = pass.controls.len() as u32;
         pass.patches.push(patch);
         pass.texture.push(texture);
-        let next = self.numbers.len() as u32;
-        let mut number = |configuration| *self.numbers.entry(configuration).or_insert(next);
+        let mut number = |configuration| self.wanted.number(Kind::Inside, configuration);
         let record = match surroundings {
             Surroundings::Regular(_) => unreachable!("it needs no plan"),
             Surroundings::Smooth(start, ring) => {
@@ -309,7 +330,7 @@ fn irregular(
     let Planning {
         mut pass,
         records,
-        numbers,
+        wanted,
         ..
     } = planning;
     pass.cached = Some("quadtree_cached");
@@ -318,11 +339,7 @@ fn irregular(
     pass.patches.shrink_to_fit();
     pass.texture.shrink_to_fit();
     pass.controls.shrink_to_fit();
-    let mut configurations: Vec<(Configuration, u32)> = numbers.into_iter().collect();
-    configurations.sort_unstable_by_key(|&(_, number)| number);
-    let kinds = configurations.iter().map(|(all, _)| (Kind::Inside, all));
-    let Planned { plans, .. } = Planned::new(kinds, options, database)?;
-    drop(configurations);
+    let plans = wanted.plans(options, database)?;
     let mut packed = PackedPlans::default();
     for plan in &plans {
         packed.push(plan.plan())?;
@@ -371,13 +388,13 @@ fn irregular(
         u64::from(header.ring_size) * u64::from(stencils)
     });
     packed.rows.hold(products.max().unwrap_or(0));
-    let rows = packed.rows.view();
+    let [rows, sets, patterns] = packed.rows.into_words();
     pass.tables = vec![
         Table::of(&packed.nodes),
-        Table::of(bytemuck::cast_slice::<u32, [u32; 2]>(&packed.points)),
-        Table::of(rows.rows),
-        Table::of(rows.sets),
-        Table::of(rows.patterns),
+        Table::of_words(packed.points, 2),
+        Table::of_words(rows, 2),
+        Table::of_words(sets, 1),
+        Table::of_words(patterns, 1),
         Table::of(&uses),
         Table::of(&borders.ends),
         Table::of(&records),

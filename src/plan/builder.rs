@@ -1,5 +1,7 @@
 //! From a configuration to a plan: adaptive refinement, level by level, with every vertex kept as a row of weights over the 1-ring.
 
+use std::borrow::Cow;
+
 use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Result};
@@ -8,10 +10,12 @@ use crate::plan::base::{Bases, UNUSED};
 use crate::plan::configuration::Configuration;
 use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
+use crate::plan::required::{require, require_stretch};
 use crate::plan::rows::Rows;
-use crate::plan::span::{Span, required_level};
+use crate::plan::span::Span;
+use crate::plan::stencil_rows::StencilRows;
 use crate::plan::stencils::Stencils;
-use crate::plan::strip::{self, Stretch, Strip};
+use crate::plan::strip::{self, Strip};
 use crate::plan::tree::{Node, Tree, child_of_corner};
 use crate::subdivision::{BsplinePatch, ControlPoint, is_plain_edge, limit_stencil};
 
@@ -78,6 +82,11 @@ impl Plan {
     /// As [`PlanOptions::check`]; [`Misuse::Ring`](crate::Misuse::Ring) for the configuration of an edge or vertex.
     pub fn build(configuration: &Configuration, options: PlanOptions) -> Result<Plan> {
         Plan::build_by(configuration, options, &Steps::default())
+    }
+
+    /// Its stencils, packed. A plan without nodes is a vertex's: its limit, and tangents.
+    pub(super) fn packed_stencils(&self) -> Cow<'_, StencilRows> {
+        self.stencils.packed(self.nodes.is_empty())
     }
 
     pub(super) fn build_by(
@@ -375,62 +384,6 @@ fn join(grown: &[Vec<Grown>], depth: usize, number: usize) -> Tree {
     }
 }
 
-/// Lowers `levels` of every stencil to the first level at which a tess coordinate falls into a cell that uses it.
-fn require(tree: &Tree, u: Span, v: Span, deepest: u32, levels: &mut [u32]) {
-    let mut lower = |points: &[u32], u: Span, v: Span| {
-        let level = required_level(u, v, deepest);
-        for &point in points {
-            let known = &mut levels[point as usize];
-            *known = level.min(*known);
-        }
-    };
-    match tree {
-        Tree::Inner(children) => {
-            let (us, vs) = (
-                u.split(u.interior_half_is_upper()),
-                v.split(v.interior_half_is_upper()),
-            );
-            for (number, child) in children.iter().enumerate() {
-                require(child, us[number % 2], vs[number / 2], deepest, levels);
-            }
-        }
-        Tree::Leaf(Node::Regular { points, .. } | Node::Crease { points, .. }) => {
-            lower(points, u, v)
-        }
-        Tree::Leaf(Node::Terminal {
-            corner,
-            levels: grids,
-            ..
-        }) => {
-            let end = child_of_corner(*corner);
-            let (mut u, mut v) = (u, v);
-            for grid in grids {
-                let (us, vs) = (u.split(end.is_multiple_of(2)), v.split(end < 2));
-                for number in (0..4).filter(|&number| number != end) {
-                    let points: Vec<u32> = (0..16)
-                        .map(|i| grid[(i % 4 + number % 2) + 5 * (i / 4 + number / 2)])
-                        .collect();
-                    lower(&points, us[number % 2], vs[number / 2]);
-                }
-                (u, v) = (us[end % 2], vs[end / 2]);
-            }
-        }
-        Tree::Leaf(Node::Curve { .. } | Node::Extraordinary { .. } | Node::Internal { .. }) => {}
-    }
-}
-
-/// Lowers the levels of the stencils of a stretch to the first level at which a tess coordinate on the edge falls into it.
-fn require_stretch(stretch: &Stretch, deepest: u32, levels: &mut [u32]) {
-    // The middle of an edge is in the half behind it, of whichever direction the edge has.
-    let spans = [stretch.span(), stretch.reversed().span()];
-    let level = spans.map(|span| span.required_level(deepest));
-    let level = level[0].min(level[1]);
-    for &point in stretch.points.iter().flatten().flatten() {
-        let known = &mut levels[point as usize];
-        *known = level.min(*known);
-    }
-}
-
 /// Weights that are less are rounding of what is none.
 const LEAST: f64 = 1e-13;
 
@@ -477,10 +430,12 @@ pub(super) fn sorted(
         *number = place[*number as usize];
     }
     let mut stencils = Stencils::new(rows.width(), !steps.rounded);
+    let mut known = steps.known_rows();
     for &old in &order {
         let row = rows.row(old as usize).iter();
         let weights = row.map(|&weight| if weight.abs() < LEAST { 0.0 } else { weight });
-        stencils.push(levels[old as usize], corners[old as usize], weights);
+        let (level, corner) = (levels[old as usize], corners[old as usize]);
+        stencils.push(level, corner, weights, false, &mut known);
     }
     Plan {
         nearby: Default::default(),

@@ -17,7 +17,7 @@ use crate::mesh::topology::{FaceCorner, Topology};
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
 
 /// What a plan depends on. Equal configurations are equal words; the words hold the whole local mesh, so no two differ by accident.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Configuration {
     words: Vec<u32>,
 }
@@ -46,13 +46,21 @@ struct Start {
 }
 
 impl Start {
-    /// The `i`th corner of a face of `arity` corners that the walk meets.
+    /// The `i`th corner of a face of `arity` corners that the walk meets, of at most two rounds.
     fn corner(self, i: u32, arity: u32) -> u32 {
-        if self.mirrored {
-            (self.corner + arity - i % arity) % arity
+        let wrapped = |corner: u32| {
+            if corner < arity {
+                corner
+            } else {
+                corner - arity
+            }
+        };
+        let i = wrapped(i);
+        wrapped(if self.mirrored {
+            self.corner + arity - i
         } else {
-            (self.corner + i) % arity
-        }
+            self.corner + i
+        })
     }
 
     /// The edge from that corner to the next.
@@ -145,7 +153,8 @@ impl Ring {
     /// The faces around so many vertices of a face.
     fn around(topology: &Topology, start: Start, corners: u32) -> Ring {
         let faces = surrounding_faces(topology, start, corners);
-        let mut walk = Walk::new(topology, faces.len());
+        let sides = faces.iter().map(|at| topology.face(at.face).len());
+        let mut walk = Walk::new(topology, sides.sum::<usize>() + faces.len());
         walk.options(topology.options());
         walk.words.push(faces.len() as u32);
         for &start in &faces {
@@ -160,6 +169,7 @@ impl Ring {
             );
         }
         walk.edges(&faces, corners as usize);
+        walk.words.shrink_to_fit();
         Ring {
             vertices: walk.vertices.found().to_vec(),
             configuration: Configuration { words: walk.words },
@@ -293,12 +303,12 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Nothing yet, with room for what a ring of so many quads takes.
+    /// Nothing yet, with room for faces that take so many words.
     fn new(topology: &Topology, faces: usize) -> Walk<'_> {
         Walk {
             topology,
             vertices: Places::default(),
-            words: Vec::with_capacity(6 + 5 * faces + 5),
+            words: Vec::with_capacity(6 + faces + 5),
         }
     }
 

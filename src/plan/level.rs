@@ -1,6 +1,6 @@
 //! Refinement levels with every vertex kept as a row of weights over the 1-ring.
 
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
@@ -8,8 +8,11 @@ use rustc_hash::FxHashMap;
 use crate::mesh::topology::Topology;
 use crate::plan::configuration::Configuration;
 use crate::plan::rows::Rows;
+use crate::plan::stencil_rows::KnownRows;
 use crate::plan::sums::Sums;
-use crate::subdivision::{BsplinePatch, Mask, Refinement, bspline_patch, refine, refine_edge};
+use crate::subdivision::{
+    BsplinePatch, Mask, Refinement, bspline_patch, refine, refine_edge, refine_vertex,
+};
 
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
 #[derive(Clone)]
@@ -68,6 +71,12 @@ impl<'a> Level<'a> {
         })
     }
 
+    /// The next level of a vertex, of which all faces around are given by the corners at which they have it; see [`refine_vertex`].
+    pub fn refined_vertex(&self, corners: &[(u32, u32)]) -> Level<'a> {
+        let words = corners.iter().flat_map(|&(face, corner)| [face, corner]);
+        self.next(VERTEX, words, || refine_vertex(self.topology(), corners))
+    }
+
     fn next(
         &self,
         kind: u32,
@@ -92,9 +101,11 @@ pub struct Steps {
     known: RefCell<FxHashMap<Box<[u32]>, Rc<Step>>>,
     /// Memory for rows, which one plan after another uses.
     memory: RefCell<Vec<f64>>,
+    /// The same for what tells rows apart.
+    known_rows: RefCell<KnownRows>,
 }
 
-/// A step: the next topology, where its vertices come from, and its cells as B-splines; no cells of edges.
+/// A step: the next topology, where its vertices come from, and its cells as B-splines; no cells of edges and vertices.
 struct Step {
     topology: Topology,
     masks: Vec<Mask>,
@@ -108,6 +119,7 @@ const MOST: usize = 1 << 7;
 /// What is refined.
 const CELLS: u32 = 0;
 const EDGE: u32 = 1;
+const VERTEX: u32 = 2;
 
 impl Steps {
     /// For plans with weights as shaders have them.
@@ -126,6 +138,13 @@ impl Steps {
     /// Leaves the memory of rows to those of the next plan.
     pub(super) fn leave(&self, rows: Rows) {
         self.memory.replace(rows.into_memory());
+    }
+
+    /// For the rows of another plan.
+    pub(super) fn known_rows(&self) -> RefMut<'_, KnownRows> {
+        let mut known = self.known_rows.borrow_mut();
+        known.clear();
+        known
     }
 
     fn step(

@@ -7,30 +7,38 @@
 //!
 //! Few rows are of vertices, or of tangents, and they are summed for every patch whatever its level: these are *dense*, without a pattern to be fetched first.
 
-use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-
-/// The bits of a number in a pattern: 4, 8 or 16.
-const WIDTHS: [u32; 3] = [4, 8, 16];
+use crate::plan::lists::{KnownLists, Lists};
+use crate::plan::row_pool::{PooledRows, SharedPool};
+use crate::plan::stencil_rows::{StencilRows, WIDTHS};
 
 /// Rows, sets and patterns, each once.
 #[derive(Clone, Debug, Default)]
 pub struct PackedRows {
     /// One a stencil, see [`abi::Use::rows`].
     rows: Vec<[u32; 2]>,
-    /// The sets, one behind the other.
-    sets: Vec<f32>,
+    /// The sets, one behind the other, as bits of floats.
+    sets: Lists,
+    known_sets: KnownLists,
     /// The patterns, one behind the other, in units of four bits.
     patterns: Vec<u32>,
     /// How many units there are.
     units: u32,
-    known_sets: FxHashMap<Box<[u32]>, u32>,
-    known_patterns: FxHashMap<Box<[u16]>, u32>,
-    known_dense: FxHashMap<Box<[u32]>, u32>,
+    /// What was packed into the patterns, and where each begins.
+    pattern_lists: Lists,
+    pattern_starts: Vec<u32>,
+    known_patterns: KnownLists,
+    /// The database's pool that plans are of, and where its sets and patterns are here, as far as they are.
+    pool: Option<SharedPool>,
+    pool_sets: Vec<u32>,
+    pool_patterns: Vec<u32>,
 }
+
+/// Instead of a place: there is none yet.
+const NONE: u32 = u32::MAX;
 
 /// Packed rows, borrowed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,16 +64,6 @@ pub struct Row<'a> {
     width: u32,
 }
 
-/// A key by which floats sort as integers, least first; zero has one key.
-fn ascending(weight: f32) -> u32 {
-    let bits = (weight + 0.0).to_bits();
-    if bits >> 31 != 0 {
-        !bits
-    } else {
-        bits | 1 << 31
-    }
-}
-
 /// # Errors
 /// [`Misuse::PlanTooLarge`] where there are more weights than words can count.
 fn check(points: usize) -> Result<()> {
@@ -74,14 +72,6 @@ fn check(points: usize) -> Result<()> {
         return Ok(());
     }
     Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }))
-}
-
-fn weight_of(key: u32) -> f32 {
-    f32::from_bits(if key >> 31 != 0 {
-        key & !(1 << 31)
-    } else {
-        !key
-    })
 }
 
 impl PackedRows {
@@ -95,88 +85,128 @@ impl PackedRows {
         self.rows.is_empty()
     }
 
-    /// Appends a row that is relative to `abi::STENCIL_...`.
+    /// Appends the rows of a plan.
     ///
     /// # Errors
     /// [`Misuse::PlanTooLarge`] when there are more weights than words can count.
-    pub(super) fn push(&mut self, weights: &[f64], corner: u32) -> Result<()> {
-        let keys = weights.iter().map(|&weight| ascending(weight as f32));
-        let keys: SmallVec<[u32; 32]> = keys.collect();
-        let mut set = keys.clone();
-        set.sort_unstable();
-        set.dedup();
-        let number = |key: &u32| set.binary_search(key).unwrap_or_default() as u16;
-        let pattern: SmallVec<[u16; 32]> = keys.iter().map(number).collect();
-        let width = match set.len() {
-            0..=16 => 0,
-            17..=256 => 1,
-            _ => 2,
-        };
-        check(self.sets.len() + set.len())?;
-        check(
-            (self.units as usize + 4 * pattern.len()) >> (abi::WIDTH_SHIFT - abi::STENCIL_SHIFT),
-        )?;
-        let row = [
-            self.set(&set) | corner << abi::STENCIL_SHIFT,
-            self.pattern(&pattern, width) | width << abi::WIDTH_SHIFT,
-        ];
-        self.rows.push(row);
-        Ok(())
+    pub(super) fn append(&mut self, own: &StencilRows) -> Result<()> {
+        let sets = own.sets.iter().map(|set| {
+            let number = self.known_sets.number(&mut self.sets, set);
+            self.sets.start(number)
+        });
+        let sets: Vec<u32> = sets.collect();
+        let patterns: Vec<u32> = own.patterns.iter().map(|list| self.pattern(list)).collect();
+        for row in &own.rows {
+            let (set, pattern) = StencilRows::parts(row);
+            let pattern = pattern.map(|pattern| patterns[pattern as usize]);
+            self.push(row, sets[set as usize], pattern);
+        }
+        self.check()
+    }
+
+    /// Appends the rows of a plan of a database: what it shares with others is found without being looked at.
+    ///
+    /// # Errors
+    /// As for [`PackedRows::append`].
+    pub(super) fn append_pooled(&mut self, own: &PooledRows) -> Result<()> {
+        if !self.pool.as_ref().is_some_and(|pool| pool.is(&own.pool)) {
+            self.pool = Some(own.pool.clone());
+            self.pool_sets.clear();
+            self.pool_patterns.clear();
+        }
+        let pool = own.pool.read();
+        self.pool_sets.resize(pool.sets.len(), NONE);
+        self.pool_patterns.resize(pool.patterns.len(), NONE);
+        for row in &own.rows {
+            let (set, pattern) = StencilRows::parts(row);
+            let mut place = self.pool_sets[set as usize];
+            if place == NONE {
+                let number = self.sets.push(pool.sets.get(set));
+                place = self.sets.start(number);
+                self.pool_sets[set as usize] = place;
+            }
+            let pattern = pattern.map(|pattern| {
+                let known = self.pool_patterns[pattern as usize];
+                if known != NONE {
+                    return known;
+                }
+                let place = self.push_pattern(pool.patterns.get(pattern));
+                self.pool_patterns[pattern as usize] = place;
+                place
+            });
+            self.push(row, place, pattern);
+        }
+        self.check()
+    }
+
+    /// Appends a row whose set and pattern are there.
+    fn push(&mut self, row: &[u32; 2], set: u32, pattern: Option<u32>) {
+        let corner = StencilRows::corner(row);
+        let origin = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
+        self.rows.push([
+            set | origin << abi::STENCIL_SHIFT,
+            pattern.unwrap_or(abi::DENSE << abi::WIDTH_SHIFT),
+        ]);
+    }
+
+    /// The words of rows, sets and patterns, see [`RowsView`].
+    pub(crate) fn into_words(self) -> [Vec<u32>; 3] {
+        [self.rows.into_flattened(), self.sets.words, self.patterns]
+    }
+
+    /// Whether places still fit into words.
+    fn check(&self) -> Result<()> {
+        check(self.sets.words.len())?;
+        check((self.units as usize) >> (abi::WIDTH_SHIFT - abi::STENCIL_SHIFT))
     }
 
     /// Appends a row that has a weight for each vertex of the ring, and is relative to its first.
     ///
     /// # Errors
-    /// As for [`PackedRows::push`].
+    /// As for [`PackedRows::append`].
     pub(super) fn push_dense(&mut self, weights: &[f64]) -> Result<()> {
         let bits = weights
             .iter()
             .map(|&weight| (weight as f32 + 0.0).to_bits());
         let bits: SmallVec<[u32; 32]> = bits.collect();
-        check(self.sets.len() + bits.len())?;
-        let first = self.sets.len() as u32;
-        let known = self.known_dense.entry(bits[..].into());
-        let first = *known.or_insert(first);
-        if first as usize == self.sets.len() {
-            self.sets.extend(bits.into_iter().map(f32::from_bits));
-        }
+        let number = self.known_sets.number(&mut self.sets, &bits);
         let row = [
-            first | abi::STENCIL_OWN << abi::STENCIL_SHIFT,
+            self.sets.start(number) | abi::STENCIL_OWN << abi::STENCIL_SHIFT,
             abi::DENSE << abi::WIDTH_SHIFT,
         ];
         self.rows.push(row);
-        Ok(())
+        self.check()
     }
 
-    /// Where a set begins.
-    fn set(&mut self, keys: &[u32]) -> u32 {
-        if let Some(&known) = self.known_sets.get(keys) {
+    /// Where a pattern begins, in units of four bits, and its width above that.
+    fn pattern(&mut self, list: &[u32]) -> u32 {
+        let number = self.known_patterns.number(&mut self.pattern_lists, list);
+        if let Some(&known) = self.pattern_starts.get(number as usize) {
             return known;
         }
-        let first = self.sets.len() as u32;
-        self.sets.extend(keys.iter().map(|&key| weight_of(key)));
-        self.known_sets.insert(keys.into(), first);
-        first
+        let start = self.push_pattern(list);
+        self.pattern_starts.push(start);
+        start
     }
 
-    /// Where a pattern begins, in units of four bits.
-    fn pattern(&mut self, numbers: &[u16], width: u32) -> u32 {
-        if let Some(&known) = self.known_patterns.get(numbers) {
-            return known;
-        }
-        let units = WIDTHS[width as usize] / 4;
+    fn push_pattern(&mut self, list: &[u32]) -> u32 {
+        let (width, count, words) = StencilRows::pattern(list);
         // The wider ones begin with a word: so those of a ring of 32 vertices are in eight words, which shaders keep at hand.
         let first = match width {
             0 => self.units,
             _ => self.units.next_multiple_of(8),
         };
-        self.units = first + units * numbers.len() as u32;
+        self.units = first + count * (WIDTHS[width as usize] / 4);
         self.patterns.resize(self.units.div_ceil(8) as usize, 0);
-        for (at, &number) in (first..).step_by(units as usize).zip(numbers) {
-            self.patterns[at as usize / 8] |= u32::from(number) << (4 * (at % 8));
+        let (word, shift) = (first as usize / 8, 4 * (first % 8));
+        for (at, &own) in (word..).zip(words) {
+            self.patterns[at] |= own << shift;
+            let above = u64::from(own) << shift >> 32;
+            if let Some(next) = self.patterns.get_mut(at + 1) {
+                *next |= above as u32;
+            }
         }
-        self.known_patterns.insert(numbers.into(), first);
-        first
+        first | width << abi::WIDTH_SHIFT
     }
 
     /// Makes room enough for shaders to believe in so many products of a weight and a vertex, see [`abi::PRODUCTS_A_WORD`]. Only small tables of long rings
@@ -185,8 +215,8 @@ impl PackedRows {
         // Twice as many, for the rounding of floats.
         let words = 2 * products.div_ceil(u64::from(abi::PRODUCTS_A_WORD)) as usize;
         if self.bytes() < 4 * words {
-            self.sets
-                .resize(self.sets.len() + words - self.bytes() / 4, 0.0);
+            let more = words - self.bytes() / 4;
+            self.sets.words.resize(self.sets.words.len() + more, 0);
         }
     }
 
@@ -194,7 +224,7 @@ impl PackedRows {
     pub fn view(&self) -> RowsView<'_> {
         RowsView {
             rows: &self.rows,
-            sets: &self.sets,
+            sets: bytemuck::cast_slice(&self.sets.words),
             patterns: &self.patterns,
         }
     }
@@ -226,6 +256,24 @@ impl<'a> RowsView<'a> {
 }
 
 impl Row<'_> {
+    /// Visits the weights of the first vertices of the ring, so many, in their order.
+    pub(crate) fn each_weight(&self, count: usize, mut visit: impl FnMut(usize, f32)) {
+        if self.width != 0 {
+            (0..count).for_each(|place| visit(place, self.weight(place)));
+            return;
+        }
+        let mut word = 0;
+        for place in 0..count {
+            let at = self.first as usize + place;
+            if place == 0 || at.is_multiple_of(8) {
+                word = self.patterns.get(at / 8).copied().unwrap_or_default() >> (4 * (at % 8));
+            }
+            let weight = self.set.get((word & 15) as usize);
+            visit(place, weight.copied().unwrap_or_default());
+            word >>= 4;
+        }
+    }
+
     /// The weight of a vertex of the ring; 0 beyond the tables' ends. Twin of `weight_at` in `glsl/lib/quadtree.glsl`.
     pub fn weight(&self, place: usize) -> f32 {
         if self.width == abi::DENSE {
@@ -242,24 +290,35 @@ impl Row<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::stencil_rows::KnownRows;
 
     #[test]
     fn rows_are_read_as_they_were_pushed_and_kept_once() {
-        let mut packed = PackedRows::default();
+        let (mut packed, mut from_pool) = (PackedRows::default(), PackedRows::default());
+        let pool = SharedPool::default();
+        let mut push = |corner: Option<u32>, weights: &[f64]| {
+            let mut rows = StencilRows::new(weights.len());
+            let mut known = KnownRows::default();
+            rows.push(0, corner, weights.iter().copied(), false, &mut known);
+            packed.append(&rows).expect("they are few");
+            let pooled = pool.keep([&rows].into_iter());
+            from_pool.append_pooled(&pooled[0]).expect("they are few");
+            packed.bytes()
+        };
         let narrow = [0.5, -0.25, 0.0, 0.5, -0.0, 0.25];
         let wide: Vec<f64> = (0..300).map(|i| f64::from((i * 7) % 290) - 11.5).collect();
         let rows = [&narrow[..], &wide[..40], &wide, &narrow];
-        for (corner, row) in [0, 5, 0, 8].into_iter().zip(rows) {
-            packed.push(row, corner).expect("they are few");
-        }
-        let before = packed.bytes();
-        packed.push(&[0.25, 0.5, -0.25, 0.0], 0).expect("few");
+        let corners = [None, Some(0), None, Some(3)];
+        let bytes = corners.into_iter().zip(rows);
+        let before = bytes.map(|(corner, row)| push(corner, row)).last();
         assert_eq!(
-            packed.bytes() - before,
+            push(None, &[0.25, 0.5, -0.25, 0.0]) - before.expect("four rows"),
             8 + 4,
             "the same weights elsewhere are a row and a pattern"
         );
-        for (number, (corner, row)) in (0..).zip([0, 5, 0, 8].into_iter().zip(rows)) {
+        let origins = corners
+            .map(|corner| corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner));
+        for (number, (corner, row)) in (0..).zip(origins.into_iter().zip(rows)) {
             let found = packed.view().row(number).expect("it was pushed");
             assert_eq!(found.corner, corner);
             for (place, &weight) in row.iter().enumerate() {
@@ -270,5 +329,6 @@ mod tests {
             }
         }
         assert!(packed.view().row(5).is_none());
+        assert_eq!(from_pool.into_words(), packed.into_words());
     }
 }

@@ -84,18 +84,9 @@ impl PackedPlans {
             let packed = self.pack(node, plan, root);
             self.nodes.push(packed);
         }
-        // A plan without nodes is a vertex's: its limit, and tangents.
-        let is_vertex = plan.nodes.is_empty();
-        let mut weights = Vec::new();
-        for number in 0..plan.stencils.len() {
-            let corner = plan.stencils.corner(number);
-            let corner = corner.map_or(abi::STENCIL_OWN, |corner| abi::STENCIL_CORNER + corner);
-            plan.stencils.write_weights(number, &mut weights);
-            if is_vertex {
-                self.rows.push_dense(&weights)?;
-            } else {
-                self.rows.push(&weights, corner)?;
-            }
+        match plan.stencils.in_pool() {
+            Some(rows) => self.rows.append_pooled(rows)?,
+            None => self.rows.append(&plan.packed_stencils())?,
         }
         for tangent in plan.nearby.iter().flatten().flatten() {
             self.rows.push_dense(tangent)?;

@@ -1,166 +1,176 @@
 //! The stencils of a plan.
 
+use std::borrow::Cow;
+
+use crate::plan::row_pool::PooledRows;
+use crate::plan::stencil_rows::{KnownRows, StencilRows};
+
 /// Control points, or limit positions and tangents, as weighted sums over the 1-ring, sorted by the level that first needs them. Below the root of a tree
 /// control points are relative to one of the first, which the nodes name.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Stencils {
     ring_size: usize,
-    levels: Vec<u8>,
-    /// Corners plus 1; 0 for none.
-    corners: Vec<u8>,
     weights: Weights,
 }
 
 /// One weight a vertex of the ring.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 enum Weights {
     /// As they were found.
-    Exact(Vec<f64>),
-    /// As shaders have them, without those that are zero: half of them are, and databases have many.
-    Rounded {
-        /// Bits of the vertices that have a weight.
-        places: Vec<u64>,
-        /// Where each stencil's weights begin.
-        starts: Vec<u32>,
-        weights: Vec<f32>,
+    Exact {
+        /// Level and corner of each stencil.
+        of: Vec<(u32, Option<u32>)>,
+        weights: Vec<f64>,
     },
+    /// As shaders have them.
+    Packed(StencilRows),
+    /// The same in a database.
+    Pooled(PooledRows),
 }
 
-impl Default for Weights {
-    fn default() -> Weights {
-        Weights::Exact(Vec::new())
+impl PartialEq for Stencils {
+    fn eq(&self, other: &Stencils) -> bool {
+        let own = |stencils: &Stencils, number| {
+            let (level, corner) = (stencils.level(number), stencils.corner(number));
+            (level, corner, stencils.weights(number))
+        };
+        (self.ring_size, self.len()) == (other.ring_size, other.len())
+            && (0..self.len()).all(|number| own(self, number) == own(other, number))
     }
 }
 
 impl Stencils {
-    /// None, over a ring of so many vertices; with exact weights, or rounded.
+    /// None, over a ring of so many vertices; with exact weights, or packed ones.
     pub(super) fn new(ring_size: usize, exact: bool) -> Stencils {
-        let rounded = || Weights::Rounded {
-            places: Vec::new(),
-            starts: Vec::new(),
-            weights: Vec::new(),
+        let weights = if exact {
+            Weights::Exact {
+                of: Vec::new(),
+                weights: Vec::new(),
+            }
+        } else {
+            Weights::Packed(StencilRows::new(ring_size))
         };
+        Stencils { ring_size, weights }
+    }
+
+    /// Those of rows that are packed already.
+    pub(super) fn of(ring_size: usize, rows: StencilRows) -> Stencils {
         Stencils {
             ring_size,
-            weights: if exact { Weights::default() } else { rounded() },
-            ..Stencils::default()
+            weights: Weights::Packed(rows),
         }
     }
 
-    /// Appends one.
+    /// Those of rows that are in a pool.
+    pub(super) fn pooled(ring_size: usize, rows: PooledRows) -> Stencils {
+        Stencils {
+            ring_size,
+            weights: Weights::Pooled(rows),
+        }
+    }
+
+    /// The rows, where they are in a pool.
+    pub(super) fn in_pool(&self) -> Option<&PooledRows> {
+        match &self.weights {
+            Weights::Pooled(rows) => Some(rows),
+            Weights::Exact { .. } | Weights::Packed(_) => None,
+        }
+    }
+
+    /// Appends one, not into a pool. Those of vertices are dense: they are summed for every patch whatever its level, without a pattern to be fetched first.
     pub(super) fn push(
         &mut self,
         level: u32,
         corner: Option<u32>,
-        own: impl ExactSizeIterator<Item = f64>,
+        own: impl Iterator<Item = f64>,
+        dense: bool,
+        known: &mut KnownRows,
     ) {
-        self.levels.push(level as u8);
-        self.corners
-            .push(corner.map_or(0, |corner| corner as u8 + 1));
         match &mut self.weights {
-            Weights::Exact(weights) => weights.extend(own),
-            Weights::Rounded {
-                places,
-                starts,
-                weights,
-            } => {
-                starts.push(weights.len() as u32);
-                let first = places.len();
-                places.resize(first + self.ring_size.div_ceil(64), 0);
-                for (place, weight) in own.enumerate() {
-                    let weight = weight as f32;
-                    if weight != 0.0 {
-                        places[first + place / 64] |= 1 << (place % 64);
-                        weights.push(weight);
-                    }
-                }
+            Weights::Exact { of, weights } => {
+                of.push((level, corner));
+                weights.extend(own);
             }
+            Weights::Packed(rows) => rows.push(level, corner, own, dense, known),
+            Weights::Pooled(_) => unreachable!("what is in a pool is finished"),
+        }
+    }
+
+    /// Packed, as shaders have them.
+    pub(super) fn packed(&self, dense: bool) -> Cow<'_, StencilRows> {
+        match &self.weights {
+            Weights::Packed(rows) => Cow::Borrowed(rows),
+            Weights::Exact { .. } | Weights::Pooled(_) => {
+                let mut rows = StencilRows::new(self.ring_size);
+                let mut known = KnownRows::default();
+                for number in 0..self.len() {
+                    let (level, corner) = (self.level(number), self.corner(number));
+                    let own = self.weights(number).into_iter();
+                    rows.push(level, corner, own, dense, &mut known);
+                }
+                Cow::Owned(rows)
+            }
+        }
+    }
+
+    /// The packed rows, which tell levels and corners; none where weights are exact.
+    fn rows(&self) -> &[[u32; 2]] {
+        match &self.weights {
+            Weights::Exact { .. } => &[],
+            Weights::Packed(rows) => &rows.rows,
+            Weights::Pooled(rows) => &rows.rows,
         }
     }
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.levels.len()
+        match &self.weights {
+            Weights::Exact { of, .. } => of.len(),
+            _ => self.rows().len(),
+        }
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.levels.is_empty()
+        self.len() == 0
     }
 
     /// How many the levels up to one need; they are the first ones.
     pub fn count(&self, level: u32) -> usize {
-        self.levels.partition_point(|&own| u32::from(own) <= level)
+        match &self.weights {
+            Weights::Exact { of, .. } => of.partition_point(|own| own.0 <= level),
+            _ => self
+                .rows()
+                .partition_point(|row| StencilRows::level(row) <= level),
+        }
     }
 
     /// The lowest level that needs stencil `number`, which must be one.
     pub fn level(&self, number: usize) -> u32 {
-        self.levels[number].into()
+        match &self.weights {
+            Weights::Exact { of, .. } => of[number].0,
+            _ => StencilRows::level(&self.rows()[number]),
+        }
     }
 
     /// The corner of the face near which stencil `number` is relative to the limit, or whose limit it is. The sum is then taken relative to that corner's
     /// vertex, which has the same bits in all faces there; otherwise to the ring's first.
     pub fn corner(&self, number: usize) -> Option<u32> {
-        self.corners[number].checked_sub(1).map(u32::from)
+        match &self.weights {
+            Weights::Exact { of, .. } => of[number].1,
+            _ => StencilRows::corner(&self.rows()[number]),
+        }
     }
 
     /// The weights of stencil `number`, one a vertex of the ring.
     pub fn weights(&self, number: usize) -> Vec<f64> {
-        let mut weights = Vec::new();
-        self.write_weights(number, &mut weights);
-        weights
-    }
-
-    /// Writes the weights into a list, in the place of what is there.
-    pub(super) fn write_weights(&self, number: usize, into: &mut Vec<f64>) {
-        into.clear();
         match &self.weights {
-            Weights::Exact(weights) => {
-                into.extend_from_slice(&weights[self.ring_size * number..][..self.ring_size]);
+            Weights::Exact { weights, .. } => {
+                weights[self.ring_size * number..][..self.ring_size].to_vec()
             }
-            Weights::Rounded { .. } => {
-                into.resize(self.ring_size, 0.0);
-                self.each_term(number, |place, weight| into[place] = weight.into());
-            }
+            Weights::Packed(rows) => rows.weights(number),
+            Weights::Pooled(rows) => rows.weights(number, self.ring_size),
         }
-    }
-
-    /// How many vertices of the ring have a weight in stencil `number`, and which, as shaders have it.
-    pub(crate) fn each_term(&self, number: usize, mut visit: impl FnMut(usize, f32)) -> usize {
-        let mut count = 0;
-        match &self.weights {
-            Weights::Exact(weights) => {
-                let row = weights[self.ring_size * number..][..self.ring_size].iter();
-                for (place, weight) in row.map(|&weight| weight as f32).enumerate() {
-                    if weight != 0.0 {
-                        visit(place, weight);
-                        count += 1;
-                    }
-                }
-            }
-            Weights::Rounded { weights, .. } => {
-                let (bits, start) = self.rounded_row(number);
-                let own = &weights[start..];
-                for (word, &bits) in bits.iter().enumerate() {
-                    let mut rest = bits;
-                    while rest != 0 {
-                        visit(64 * word + rest.trailing_zeros() as usize, own[count]);
-                        count += 1;
-                        rest &= rest - 1;
-                    }
-                }
-            }
-        }
-        count
-    }
-
-    /// Bits and beginning of a stencil with rounded weights.
-    fn rounded_row(&self, number: usize) -> (&[u64], usize) {
-        let Weights::Rounded { places, starts, .. } = &self.weights else {
-            return (&[], 0);
-        };
-        let words = self.ring_size.div_ceil(64);
-        (&places[words * number..][..words], starts[number] as usize)
     }
 }
 
@@ -169,44 +179,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rounded_stencils_have_the_weights_that_shaders_have() {
-        for ring_size in [1, 30, 64, 65, 200] {
+    fn packed_stencils_have_the_weights_that_shaders_have() {
+        for ring_size in [1, 30, 64, 65, 200, 700] {
             let weight = |number: usize, place: usize| match (place * 7 + number) % 3 {
                 0 => 0.0,
+                1 => ((place % 5) as f64 - 3.1) / (number as f64 + 1.7),
                 _ => (place as f64 - 3.1) / (number as f64 + 1.7),
             };
+            let mut known = KnownRows::default();
             let mut exact = Stencils::new(ring_size, true);
+            let mut direct = Stencils::new(ring_size, false);
             for number in 0..5 {
-                let corner = (number % 2 == 1).then_some(number as u32);
-                let weights = (0..ring_size).map(|place| weight(number, place));
-                exact.push(number as u32 / 2, corner, weights);
-            }
-            let mut rounded = Stencils::new(ring_size, false);
-            for number in 0..5 {
-                let (level, corner) = (exact.level(number), exact.corner(number));
-                rounded.push(level, corner, exact.weights(number).into_iter());
-            }
-            assert_eq!((rounded.len(), rounded.count(1)), (5, 4));
-            for number in 0..5 {
-                assert_eq!(rounded.corner(number), exact.corner(number));
-                let expected: Vec<f32> = (0..ring_size)
-                    .map(|place| weight(number, place) as f32)
-                    .collect();
-                let dense = rounded.weights(number);
-                assert!(
-                    dense
-                        .iter()
-                        .map(|&weight| weight as f32)
-                        .eq(expected.clone())
-                );
-                let terms = (0..).zip(expected).filter(|term| term.1 != 0.0);
-                let terms: Vec<(usize, f32)> = terms.collect();
-                for stencils in [&rounded, &exact] {
-                    let mut found = Vec::new();
-                    let count =
-                        stencils.each_term(number, |place, weight| found.push((place, weight)));
-                    assert_eq!((count, &found), (terms.len(), &terms));
+                let corner = (number % 2 == 1).then_some(number as u32 % 4);
+                for stencils in [&mut exact, &mut direct] {
+                    let weights = (0..ring_size).map(|place| weight(number, place));
+                    stencils.push(number as u32 / 2, corner, weights, false, &mut known);
                 }
+            }
+            let packed = Stencils::of(ring_size, exact.packed(false).into_owned());
+            assert_eq!(packed, direct);
+            assert_eq!((packed.len(), packed.count(1)), (5, 4));
+            let sums: Vec<[f64; 2]> = exact.packed(false).sums().collect();
+            for number in 0..5 {
+                assert_eq!(packed.corner(number), exact.corner(number));
+                assert_eq!(packed.level(number), exact.level(number));
+                let rounded = exact.weights(number);
+                let rounded = rounded.iter().map(|&weight| f64::from(weight as f32));
+                let weights = packed.weights(number);
+                assert!(weights.iter().copied().eq(rounded), "{ring_size}");
+                let sum: f64 = weights.iter().sum();
+                let size: f64 = weights.iter().map(|weight| weight.abs()).sum();
+                assert!((sum - sums[number][0]).abs() <= 1e-12 * size.max(1.0));
+                assert!((size - sums[number][1]).abs() <= 1e-12 * size.max(1.0));
             }
         }
     }

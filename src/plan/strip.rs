@@ -20,7 +20,7 @@ pub enum Crease {
 }
 
 /// A stretch of an edge: from `at` / 2^`depth` to one more.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// How often the edge is halved.
     pub depth: u32,
@@ -121,6 +121,7 @@ impl Strip {
         let mut stretches = Vec::new();
         let whole = nodes.first()?.clone();
         collect(nodes, &whole, edge, (0, 0), &mut stretches)?;
+        stretches.shrink_to_fit();
         Some(Strip(stretches))
     }
 
@@ -165,14 +166,29 @@ impl Strip {
         nodes
     }
 
-    /// The same seen from the edge's other side and end.
-    pub fn reversed(&self) -> Strip {
-        Strip(self.0.iter().rev().map(Stretch::reversed).collect())
+    /// How many stretches there are.
+    pub fn count(&self) -> usize {
+        self.0.len()
     }
 
-    /// That of the face's mirror image, along the edge's direction there.
-    pub fn mirrored(&self) -> Strip {
-        Strip(self.0.iter().rev().map(Stretch::mirrored).collect())
+    /// The stretches of the face's mirror image, along the edge's direction there; or those seen from the edge's other side and end; or both.
+    pub fn seen(&self, mirrored: bool, reversed: bool) -> impl Iterator<Item = Stretch> + '_ {
+        let last = self.0.len().wrapping_sub(1);
+        (0..self.0.len()).map(move |i| {
+            let mut stretch = self.0[if mirrored != reversed { last - i } else { i }];
+            if mirrored {
+                stretch = stretch.mirrored();
+            }
+            if reversed {
+                stretch = stretch.reversed();
+            }
+            stretch
+        })
+    }
+
+    /// The same as a strip.
+    pub fn turned(&self, mirrored: bool, reversed: bool) -> Strip {
+        Strip(self.seen(mirrored, reversed).collect())
     }
 }
 

@@ -181,6 +181,7 @@ impl Tree {
                 }
             }
         }
+        nodes.shrink_to_fit();
         nodes
     }
 }

@@ -87,7 +87,7 @@ impl VertexPlan {
                 limit_stencil(level.topology(), face, corner)
             };
             let Some(limits) = sectors.iter().map(limit).collect::<Option<Vec<_>>>() else {
-                (level, corners) = refined(&level, &corners);
+                (level, corners) = refined(&level, kind, &corners);
                 continue;
             };
             let mut rows = Rows::zero(level.rows.width(), 0);
@@ -162,21 +162,32 @@ fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Sums) {
 }
 
 /// The next level around the vertex: the children at it, in the order of their parents, and their corners there.
-fn refined<'a>(level: &Level<'a>, corners: &[(u32, u32)]) -> (Level<'a>, Vec<(u32, u32)>) {
+fn refined<'a>(
+    level: &Level<'a>,
+    kind: VertexKind,
+    corners: &[(u32, u32)],
+) -> (Level<'a>, Vec<(u32, u32)>) {
     let arity = |face: u32| level.topology().face(face).len();
     let next = corners.iter().enumerate().map(|(child, &(face, corner))| {
         // A quad's child keeps its corners; an n-gon's begins at the vertex.
         (child as u32, if arity(face) == 4 { corner } else { 0 })
     });
     let next = next.collect();
-    (level.refined(corners), next)
+    let level = match kind {
+        VertexKind::Control => level.refined_vertex(corners),
+        // One face's corner stands for all around.
+        VertexKind::Centre => level.refined(corners),
+    };
+    (level, next)
 }
 
 /// The stencils.
 fn plan(rows: &Rows, options: PlanOptions, steps: &Steps) -> Plan {
     let mut stencils = Stencils::new(rows.width(), !steps.rounded);
+    let mut known = steps.known_rows();
     for number in 0..rows.len() {
-        stencils.push(0, None, rows.row(number).iter().copied());
+        let weights = rows.row(number).iter().copied();
+        stencils.push(0, None, weights, true, &mut known);
     }
     Plan {
         ring_size: rows.width(),

@@ -25,8 +25,8 @@ pub(crate) use limit::{TangentPlane, closing_tangents, is_unpromised, tangent_pl
 pub use limit_surface::{LimitSample, LimitSurface};
 pub use masks::{Blend, Mask};
 pub(crate) use plain::is_plain_edge;
-pub(crate) use refine::refine_edge;
 pub use refine::{Refinement, refine};
+pub(crate) use refine::{refine_edge, refine_vertex};
 pub(crate) use regular::{BsplinePatch, ControlPoint, bspline_patch};
 pub(crate) use schemes::rings as scheme_rings;
 pub use schemes::vertex_limit;

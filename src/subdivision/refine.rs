@@ -145,6 +145,17 @@ pub fn refine_edge(parent: &Topology, edge: u32, from: u32, sides: &[u32]) -> Re
     step.finish(&faces, count)
 }
 
+/// Refines the faces around a vertex, which are all that the limit there depends on, given by their corners at it. What lies beyond, the children of an n-gon
+/// above all, is left out.
+pub fn refine_vertex(parent: &Topology, corners: &[(u32, u32)]) -> Refinement {
+    let mut step = Step::new(parent);
+    let faces: Vec<[u32; 4]> = corners
+        .iter()
+        .map(|&(face, corner)| child(parent, face, corner).map(|origin| step.number(origin)))
+        .collect();
+    step.finish(&faces, corners.len())
+}
+
 /// Numbers the vertices of the next level as they are met.
 struct Step<'a> {
     parent: &'a Topology,

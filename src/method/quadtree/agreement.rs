@@ -13,7 +13,7 @@ use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::plain::is_plain;
-use crate::plan::{Plan, SmoothQuads, Stretch, Strip};
+use crate::plan::{PackedPlans, Plan, Row, RowsView, SmoothQuads, Stretch, Strip};
 
 /// A patch's edge.
 #[derive(Clone, Copy)]
@@ -23,6 +23,9 @@ struct Side<'a> {
     plan: &'a Plan,
     /// The edge of the patch, 0..=3.
     edge: u32,
+    /// The rows of all plans, and the number of the first of this one.
+    rows: RowsView<'a>,
+    first_row: u32,
 }
 
 /// Whether each edge of the mesh needs no plan.
@@ -34,15 +37,19 @@ pub fn agreed_edges(
     smooth: &SmoothQuads<'_>,
     patches: &Irregulars<'_>,
     plans: &[&Plan],
+    packed: &PackedPlans,
 ) -> Vec<bool> {
     let pairs = pairs(topology, smooth, patches);
     let side = |number: u32| {
         let patch = patches.get(number / 4);
+        let plan = patch.record.plan as usize;
         Side {
             topology,
             patch,
-            plan: plans[patch.record.plan as usize],
+            plan: plans[plan],
             edge: number % 4,
+            rows: packed.rows.view(),
+            first_row: packed.headers[plan].rows,
         }
     };
     let mut known: FxHashMap<Key, u32> = FxHashMap::default();
@@ -123,6 +130,25 @@ fn pairs(topology: &Topology, smooth: &SmoothQuads<'_>, patches: &Irregulars<'_>
 /// So many pairs are looked at between two looks at what is known.
 const AT_A_TIME: usize = 1 << 13;
 
+/// Pairs of points that were found to be the same: stretches side by side share most of theirs. The last ones.
+#[derive(Default)]
+struct Same {
+    pairs: [Option<[u32; 2]>; 32],
+    next: usize,
+}
+
+impl Same {
+    /// Whether a pair is one of them. If it is not, it is to be looked at, and counts as one from now on: the first that differs ends it all.
+    fn is_met(&mut self, pair: [u32; 2]) -> bool {
+        let is_met = self.pairs.contains(&Some(pair));
+        if !is_met {
+            self.pairs[self.next % 32] = Some(pair);
+            self.next += 1;
+        }
+        is_met
+    }
+}
+
 impl Side<'_> {
     /// The edge of the mesh.
     fn number(self) -> u32 {
@@ -156,26 +182,23 @@ impl Side<'_> {
     }
 
     /// The stretches in the direction of the mesh's edge.
-    fn strip(self) -> Option<Strip> {
-        let strip = self.patch.strip(self.plan, self.edge)?;
-        Some(if self.is_flipped() {
-            strip.reversed()
-        } else {
-            strip
-        })
+    fn stretches(self, strip: &Strip) -> impl Iterator<Item = Stretch> + '_ {
+        strip.seen(self.patch.record.mirrored, self.is_flipped())
     }
 
     fn agrees(self, other: Side<'_>) -> bool {
-        let (Some(one), Some(two)) = (self.strip(), other.strip()) else {
+        let strips = [self, other].map(|side| side.patch.strip(side.plan, side.edge));
+        let [Some(one), Some(two)] = strips else {
             return false;
         };
+        if self.is_flipped() == other.is_flipped() || one.count() != two.count() {
+            return false;
+        }
         let places = self.places_in(other);
-        self.is_flipped() != other.is_flipped()
-            && one.stretches().count() == two.stretches().count()
-            && one
-                .stretches()
-                .zip(two.stretches())
-                .all(|(one, two)| self.has_same(one, other, two, &places))
+        let mut same = Same::default();
+        let stretches = self.stretches(one).zip(other.stretches(two));
+        let mut stretches = stretches.into_iter();
+        stretches.all(|(one, two)| self.has_same(&one, other, &two, &places, &mut same))
     }
 
     /// Where the vertices of this side's ring stand in the other's. Of smooth faces only those around the edge count: others may be the same in some pairs
@@ -199,6 +222,7 @@ impl Side<'_> {
         other: Side<'_>,
         others: &Stretch,
         places: &[Option<u16>],
+        same: &mut Same,
     ) -> bool {
         if (own.depth, own.at, own.crease) != (others.depth, others.at, others.crease) {
             return false;
@@ -212,20 +236,36 @@ impl Side<'_> {
             .zip(other_points.iter().flatten());
         let mut pairs = points.chain([(&own.base, &others.base)]);
         pairs.all(|(&own, &others)| {
-            self.origin(own) == other.origin(others) && self.has_terms(own, other, others, places)
+            same.is_met([own, others])
+                || self.origin(own) == other.origin(others)
+                    && self.has_terms(own, other, others, places)
         })
     }
 
     /// Whether two points are sums of the same: the order is that of the vertices' numbers in the mesh.
     fn has_terms(self, own: u32, other: Side<'_>, others: u32, places: &[Option<u16>]) -> bool {
+        let (Some(own), Some(others)) = (self.row(own), other.row(others)) else {
+            return false;
+        };
+        let mut expected = 0;
         let mut weights = [0.0; abi::CONTROL_INVOCATIONS as usize];
-        let stencils = &other.plan.stencils;
-        let expected = stencils.each_term(others as usize, |at, weight| weights[at] = weight);
-        let mut same = true;
-        let count = self.plan.stencils.each_term(own as usize, |at, weight| {
-            same &= places[at].is_some_and(|at| weights[usize::from(at)] == weight);
+        let ring = other.patch.vertices.len();
+        others.each_weight(ring, |at, weight| {
+            weights[at] = weight;
+            expected += u32::from(weight != 0.0);
         });
-        same && count == expected
+        let mut same = true;
+        own.each_weight(places.len(), |at, weight| {
+            if weight != 0.0 {
+                same &= places[at].is_some_and(|at| weights[usize::from(at)] == weight);
+                expected = expected.wrapping_sub(1);
+            }
+        });
+        same && expected == 0
+    }
+
+    fn row(&self, point: u32) -> Option<Row<'_>> {
+        self.rows.row(self.first_row + point)
     }
 
     /// The vertex that a point is relative to.

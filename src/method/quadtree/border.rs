@@ -19,7 +19,7 @@ use crate::method::quadtree::agreement::agreed_edges;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, is_turned_corner, vertex_rows};
-use crate::method::quadtree::subjects::{Known, Line, Point, Shared, Subject};
+use crate::method::quadtree::subjects::{Known, LONG, Line, Point, Shared, Subject};
 use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side, SmoothQuads};
 
 /// The levels that a patch can be drawn at.
@@ -110,7 +110,7 @@ impl Borders {
             patches,
             plans,
         } = given;
-        let agreed = agreed_edges(topology, smooth, patches, plans);
+        let agreed = agreed_edges(topology, smooth, patches, plans, packed);
         let is_settled = |edge: u32| {
             let ends = topology.edge(edge).vertices;
             agreed[edge as usize] || ends.iter().all(|&vertex| is_plain(smooth, vertex))
@@ -290,7 +290,7 @@ impl Builder<'_> {
                 _ if self.agreed[edge as usize] => 2 | u32::from(flipped),
                 None => 0,
                 Some(Known { plan, ring }) => {
-                    let ring = ring.as_deref().expect("lines have rings");
+                    let ring = ring.as_deref().expect("smooth faces have short rings");
                     let against = u32::from(from != ring.vertices[0]);
                     let beyond = u32::from(face != ring.faces[0]);
                     4 + (plan << 2 | against << 1 | beyond)
@@ -335,7 +335,9 @@ impl Builder<'_> {
             }
             match self.lines.get(topology, line) {
                 Some(known) => {
-                    let ring = known.ring.as_deref().expect("lines have rings");
+                    let long = known.ring.is_none().then(|| line.ring(topology));
+                    let ring = known.ring.as_deref().or(long.as_ref());
+                    let ring = ring.expect("it is kept, or was just found");
                     let flags = flags ^ self.line_flags(part.face, corner, line, ring, known.plan);
                     let flipped = 2 * (flags & abi::USE_FLIPPED);
                     uses[number].flags = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
@@ -365,10 +367,7 @@ impl Builder<'_> {
             let Some(point) = point else { continue };
             match self.vertices.get(topology, point) {
                 Some(known) => {
-                    let star = known.ring.is_none().then(|| {
-                        let stars = self.stars.entry(point.number(topology));
-                        stars.or_insert_with(|| point.ring(topology).into()).clone()
-                    });
+                    let star = known.ring.is_none().then(|| self.star(point));
                     let ring = known.ring.as_deref().or(star.as_deref());
                     let ring = ring.expect("it is kept, or was just found");
                     let local = ring.faces.iter().position(|&face| face == part.face);
@@ -408,6 +407,19 @@ impl Builder<'_> {
         })
     }
 
+    /// The ring of a point that has none of its own.
+    fn star(&mut self, point: Point) -> Rc<Ring> {
+        let number = point.number(self.topology);
+        if let Some(known) = self.stars.get(&number) {
+            return known.clone();
+        }
+        let ring = Rc::new(point.ring(self.topology));
+        if ring.vertices.len() <= LONG {
+            self.stars.insert(number, ring.clone());
+        }
+        ring
+    }
+
     /// The root of the tree of an edge that is evaluated with the points of an inside's plan.
     fn strip(&mut self, patch: Irregular<'_>, edge: u32, flipped: bool) -> u32 {
         let (number, mirrored) = (patch.record.plan, patch.record.mirrored);
@@ -416,11 +428,7 @@ impl Builder<'_> {
         let push = || {
             let strip = patch.strip(plan, edge);
             let strip = strip.expect("faces agree on edges along which they have cells");
-            if flipped {
-                packed.push_strip(plan, &strip.reversed())
-            } else {
-                packed.push_strip(plan, &strip)
-            }
+            packed.push_strip(plan, &strip.turned(mirrored, flipped))
         };
         *self
             .strips

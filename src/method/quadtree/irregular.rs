@@ -48,7 +48,8 @@ pub fn push_ring(controls: &mut Vec<u32>, vertices: &[u32], order: impl Iterator
 /// The order of a ring's places, see [`Irregulars`].
 pub fn order(vertices: &[u32]) -> Vec<u16> {
     let mut order: Vec<u16> = (0..vertices.len() as u16).collect();
-    order.sort_unstable_by_key(|&place| vertices[place as usize]);
+    // Around an n-gon they are a few runs, which this sort finds.
+    order.sort_by_key(|&place| vertices[place as usize]);
     order
 }
 
@@ -118,14 +119,9 @@ impl Irregular<'_> {
         if self.record.mirrored { 3 - edge } else { edge }
     }
 
-    /// The cells of its plan along edge 0..=3 of the patch, in the patch's direction.
-    pub fn strip(&self, plan: &Plan, edge: u32) -> Option<Strip> {
-        let strip = plan.strips[self.edge(edge) as usize].as_ref()?;
-        Some(if self.record.mirrored {
-            strip.mirrored()
-        } else {
-            strip.clone()
-        })
+    /// The cells of its plan along edge 0..=3 of the patch, in the direction of the plan's edge.
+    pub fn strip<'p>(&self, plan: &'p Plan, edge: u32) -> Option<&'p Strip> {
+        plan.strips[self.edge(edge) as usize].as_ref()
     }
 
     /// Whether edge 0..=3 of a quad's patch runs against the direction of the mesh's edge.

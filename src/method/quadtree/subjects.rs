@@ -99,43 +99,38 @@ impl Subject for Point {
     }
 }
 
-/// Plans of a database, by numbers of their own.
-pub struct Planned {
-    /// Of each configuration that was asked for, the number of its plan.
-    pub numbers: Vec<u32>,
-    /// The plans, each once.
-    pub plans: Vec<Arc<Entry>>,
-}
+/// Configurations that plans are wanted for, each once, by numbers of their own.
+#[derive(Default)]
+pub struct Wanted(FxHashMap<(Kind, Configuration), u32>);
 
-impl Planned {
-    pub fn new<'a>(
-        wanted: impl Iterator<Item = (Kind, &'a Configuration)>,
-        options: PlanOptions,
-        database: &Database,
-    ) -> Result<Planned> {
-        let mut known: FxHashMap<(Kind, &Configuration), u32> = FxHashMap::default();
-        let mut firsts: Vec<(Kind, &Configuration)> = Vec::new();
-        let number = |wanted| {
-            *known.entry(wanted).or_insert_with(|| {
-                firsts.push(wanted);
-                firsts.len() as u32 - 1
-            })
-        };
-        let numbers = wanted.map(number).collect();
-        let mut plans: Vec<Option<Arc<Entry>>> = vec![None; firsts.len()];
-        for kind in Kind::ALL {
-            let own = (0..firsts.len()).filter(|&i| firsts[i].0 == kind);
-            let own: Vec<usize> = own.collect();
-            let configurations: Vec<&Configuration> = own.iter().map(|&i| firsts[i].1).collect();
-            let found = database.plans(kind, options, &configurations)?;
-            for (&i, (_, entry)) in own.iter().zip(found) {
-                plans[i] = Some(entry);
+impl Wanted {
+    /// The number of a configuration.
+    pub fn number(&mut self, kind: Kind, configuration: Configuration) -> u32 {
+        let next = self.0.len() as u32;
+        *self.0.entry((kind, configuration)).or_insert(next)
+    }
+
+    /// The plans, by these numbers.
+    ///
+    /// # Errors
+    /// As [`Database::plans`].
+    pub fn plans(self, options: PlanOptions, database: &Database) -> Result<Vec<Arc<Entry>>> {
+        let mut wanted: Vec<(Kind, u32, Configuration)> = self
+            .0
+            .into_iter()
+            .map(|((kind, configuration), number)| (kind, number, configuration))
+            .collect();
+        wanted.sort_unstable_by_key(|&(kind, number, _)| (kind, number));
+        let mut plans: Vec<Option<Arc<Entry>>> = vec![None; wanted.len()];
+        for own in wanted.chunk_by(|one, other| one.0 == other.0) {
+            let configurations = own.iter().map(|(.., configuration)| configuration);
+            let configurations: Vec<&Configuration> = configurations.collect();
+            let found = database.plans(own[0].0, options, &configurations)?;
+            for (&(_, number, _), (_, entry)) in own.iter().zip(found) {
+                plans[number as usize] = Some(entry);
             }
         }
-        Ok(Planned {
-            numbers,
-            plans: plans.into_iter().flatten().collect(),
-        })
+        Ok(plans.into_iter().flatten().collect())
     }
 }
 
@@ -143,9 +138,12 @@ impl Planned {
 pub struct Known {
     /// The number of its plan.
     pub plan: u32,
-    /// Its ring, which is not kept of what looks alike at first sight.
+    /// Its ring, which is not kept of what looks alike at first sight, and where it is long: around poles and n-gons rings take the square of these.
     pub ring: Option<Box<Ring>>,
 }
+
+/// Longer rings are found anew where they are needed.
+pub const LONG: usize = 1 << 8;
 
 /// The rings and plans of subjects of one kind.
 pub struct Shared {
@@ -183,47 +181,37 @@ impl Shared {
             .par_iter()
             .map(|subject| subject.looks(smooth))
             .collect();
-        let mut first_looks = FxHashMap::default();
-        let mut rings: Vec<Option<Box<Ring>>> = all
-            .par_iter()
-            .zip(&looks)
-            .map(|(subject, looks)| looks.is_none().then(|| Box::new(subject.ring(topology))))
-            .collect();
-        for ((looks, subject), ring) in looks.iter().zip(&all).zip(&mut rings) {
-            if let Some(looks) = looks {
-                first_looks.entry(*looks).or_insert_with(|| {
-                    *ring = Some(Box::new(subject.ring(topology)));
-                });
+        let mut wanted = Wanted::default();
+        let mut plan_of_looks = FxHashMap::default();
+        let mut known = Vec::with_capacity(all.len());
+        // What rings tell is there as long as they are not known to be alike: around poles and in n-gons it is much.
+        for (subjects, looks) in all.chunks(AT_A_TIME).zip(looks.chunks(AT_A_TIME)) {
+            let rings = subjects.par_iter().zip(looks);
+            let rings = rings
+                .map(|(subject, looks)| looks.is_none().then(|| Box::new(subject.ring(topology))));
+            let rings: Vec<Option<Box<Ring>>> = rings.collect();
+            for ((subject, looks), mut ring) in subjects.iter().zip(looks).zip(rings) {
+                let mut plan_of = |ring: &mut Ring| {
+                    let configuration = std::mem::take(&mut ring.configuration);
+                    wanted.number(subject.kind(), configuration)
+                };
+                let plan = match (&mut ring, looks) {
+                    (Some(ring), _) => plan_of(ring),
+                    (None, looks) => *plan_of_looks
+                        .entry(*looks)
+                        .or_insert_with(|| plan_of(&mut subject.ring(topology))),
+                };
+                let ring = ring.filter(|ring| ring.vertices.len() <= LONG);
+                known.push(Known { plan, ring });
             }
         }
-        let wanted = all.iter().zip(&rings).filter_map(|(subject, ring)| {
-            let ring = ring.as_ref()?;
-            Some((subject.kind(), &ring.configuration))
-        });
-        let Planned { numbers, plans } = Planned::new(wanted, options, database)?;
+        let plans = wanted.plans(options, database)?;
         let first = packed.headers.len() as u32;
         for plan in &plans {
             packed.push(plan.plan())?;
         }
-        let mut numbers = numbers.into_iter();
-        let mut plan_of_looks = FxHashMap::default();
-        let known = looks.into_iter().zip(rings).map(|(looks, ring)| {
-            let mut next = || numbers.next().expect("each ring has a plan");
-            match (looks, ring) {
-                (None, ring) => Known { plan: next(), ring },
-                (Some(looks), Some(_)) => {
-                    let plan = next();
-                    plan_of_looks.insert(looks, plan);
-                    Known { plan, ring: None }
-                }
-                (Some(looks), None) => Known {
-                    plan: plan_of_looks[&looks],
-                    ring: None,
-                },
-            }
-        });
         Ok(Shared {
-            known: known.collect(),
+            known,
             places,
             plans,
             first,
@@ -236,6 +224,9 @@ impl Shared {
         (place != NONE).then(|| &self.known[place as usize])
     }
 }
+
+/// So many rings are on their way at a time.
+const AT_A_TIME: usize = 1 << 8;
 
 /// Instead of a place: there is none.
 const NONE: u32 = u32::MAX;

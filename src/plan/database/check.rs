@@ -54,12 +54,13 @@ fn is_plan(key: &Key, plan: &Plan) -> bool {
         0
     };
     let levels = key.options.max_level..=key.options.max_level + deeper;
-    let sum = |weights: &[f64]| weights.iter().sum::<f64>();
-    let size = |weights: &[f64]| weights.iter().map(|weight| weight.abs()).sum::<f64>();
     // A weighted mean, a difference of two, or a tangent.
-    let is_row = |weights: &[f64]| {
-        let (sum, size) = (sum(weights), size(weights));
+    let is_row = |[sum, size]: [f64; 2]| {
         size.is_finite() && (sum - sum.round()).abs() <= 1e-4 * (1.0 + size)
+    };
+    let sums = |weights: &[f64]| {
+        let size = weights.iter().map(|weight| weight.abs()).sum();
+        [weights.iter().sum(), size]
     };
     let stencils = &plan.stencils;
     levels.contains(&plan.max_level)
@@ -69,14 +70,14 @@ fn is_plan(key: &Key, plan: &Plan) -> bool {
         && (0..stencils.len()).all(|number| {
             stencils.level(number) <= plan.max_level
                 && stencils.corner(number).is_none_or(|corner| corner < 4)
-                && is_row(&stencils.weights(number))
         })
+        && plan.packed_stencils().sums().all(is_row)
         && plan
             .nearby
             .iter()
             .flatten()
             .flatten()
-            .all(|row| is_row(row))
+            .all(|row| is_row(sums(row)))
         && plan
             .strips
             .iter()

@@ -88,6 +88,15 @@ impl Entry {
         }
     }
 
+    /// Its nodes and stencils, to be changed.
+    pub(super) fn plan_mut(&mut self) -> &mut Plan {
+        match self {
+            Entry::Inside(plan) => plan,
+            Entry::Edge(edge) => &mut edge.plan,
+            Entry::Vertex(vertex) => &mut vertex.plan,
+        }
+    }
+
     /// Its nodes and stencils.
     pub fn plan(&self) -> &Plan {
         match self {

@@ -16,6 +16,10 @@ use crate::plan::database::records::{self, Beginning, HEADER};
 /// How large a file grows, in bytes.
 pub const GREATEST_BYTES: u64 = 256 << 20;
 
+/// Records with less than that between them are read together, up to so many bytes.
+const GAP: u64 = 1 << 16;
+const AT_ONCE: u64 = 1 << 22;
+
 /// An open database file.
 #[derive(Debug)]
 pub struct PlanFile {
@@ -104,12 +108,12 @@ impl PlanFile {
         let (found, lost) = records::scan(&bytes, 0);
         self.lost += lost as u64;
         for range in found {
-            let Some(parts) = records::parts(&bytes[range.clone()]) else {
+            let Some(key) = records::key(&bytes[range.clone()]) else {
                 continue;
             };
             let place = self.read + range.start as u64..self.read + range.end as u64;
             // The latest counts: it may have been appended because an earlier one made no sense.
-            let earlier = self.places.insert(parts.key.into(), place);
+            let earlier = self.places.insert(key, place);
             self.repeated += usize::from(earlier.is_some());
         }
         self.read += bytes.len() as u64;
@@ -118,22 +122,51 @@ impl PlanFile {
 
     /// The words of the entry of a key; None where there is none, or what is there now is none any more.
     pub fn find(&mut self, key: &[u32]) -> Option<Vec<u32>> {
-        let place = self.places.get(key)?.clone();
-        let mut bytes = vec![0; (place.end - place.start) as usize];
-        let read = self.file.seek(SeekFrom::Start(place.start));
-        let read = read.and_then(|_| self.file.read_exact(&mut bytes));
-        let parts = read.ok().and_then(|()| records::parts(&bytes));
-        let entry = parts
-            .filter(|parts| parts.key == key)
-            .map(|parts| parts.entry);
-        if entry.is_none() {
-            tracing::warn!(
-                "{}: an entry was damaged since it was read; it is built anew",
-                self.path.display()
-            );
-            self.places.remove(key);
+        self.find_all(&[key.to_vec()]).pop()?
+    }
+
+    /// The same of many keys: what stands side by side is read at once.
+    pub fn find_all(&mut self, keys: &[Vec<u32>]) -> Vec<Option<Vec<u32>>> {
+        let places = keys.iter().map(|key| self.places.get(&key[..]).cloned());
+        let places: Vec<Option<Range<u64>>> = places.collect();
+        let mut order: Vec<usize> = (0..keys.len()).filter(|&i| places[i].is_some()).collect();
+        let place = |i: usize| places[i].clone().unwrap_or_default();
+        order.sort_unstable_by_key(|&i| place(i).start);
+        let mut found = vec![None; keys.len()];
+        let mut bytes = Vec::new();
+        let mut rest = &order[..];
+        while let Some(&first) = rest.first() {
+            let start = place(first).start;
+            let near = |pair: &[usize]| {
+                let next = place(pair[1]);
+                next.start <= place(pair[0]).end + GAP && next.end <= start + AT_ONCE
+            };
+            let count = 1 + rest.windows(2).take_while(|pair| near(pair)).count();
+            let (group, behind) = rest.split_at(count);
+            rest = behind;
+            let end = place(group[count - 1]).end;
+            bytes.resize((end - start) as usize, 0);
+            let read = self.file.seek(SeekFrom::Start(start));
+            let read = read.and_then(|_| self.file.read_exact(&mut bytes));
+            for &i in group {
+                let own = place(i);
+                let own = (own.start - start) as usize..(own.end - start) as usize;
+                let entry = read.is_ok().then(|| records::entry(&bytes[own], &keys[i]));
+                found[i] = entry.flatten();
+                if found[i].is_none() {
+                    self.damaged(&keys[i]);
+                }
+            }
         }
-        entry
+        found
+    }
+
+    fn damaged(&mut self, key: &[u32]) {
+        tracing::warn!(
+            "{}: an entry was damaged since it was read; it is built anew",
+            self.path.display()
+        );
+        self.places.remove(key);
     }
 
     /// Forgets an entry that is not sound, so that one that is can be appended.

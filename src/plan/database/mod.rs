@@ -19,6 +19,8 @@ use crate::error::{Error, Result};
 use crate::plan::builder::PlanOptions;
 use crate::plan::configuration::Configuration;
 use crate::plan::level::Steps;
+use crate::plan::row_pool::SharedPool;
+use crate::plan::stencils::Stencils;
 
 pub use entry::{Entry, Key, Kind};
 pub use file::GREATEST_BYTES;
@@ -29,8 +31,13 @@ pub use records::VERSION;
 #[derive(Debug, Default)]
 pub struct Database {
     known: RwLock<Known>,
+    /// The weights of all plans.
+    pool: SharedPool,
     file: Option<Mutex<PlanFile>>,
 }
+
+/// So many plans are on their way at a time: before they share their weights they take several times the memory.
+const AT_A_TIME: usize = 1 << 9;
 
 /// Numbers of configurations.
 type Numbers = FxHashMap<Configuration, u32>;
@@ -92,6 +99,7 @@ impl Database {
     pub fn open(path: impl AsRef<Path>) -> Result<Database> {
         Ok(Database {
             known: RwLock::default(),
+            pool: SharedPool::default(),
             file: Some(Mutex::new(PlanFile::open(path.as_ref())?)),
         })
     }
@@ -144,19 +152,29 @@ impl Database {
 
     /// Reads or builds plans, and keeps them.
     fn add(&self, keys: Vec<Key>) -> Result<()> {
+        let mut keys = keys.into_iter();
+        loop {
+            let some: Vec<Key> = keys.by_ref().take(AT_A_TIME).collect();
+            if some.is_empty() {
+                return Ok(());
+            }
+            self.add_some(some)?;
+        }
+    }
+
+    fn add_some(&self, keys: Vec<Key>) -> Result<()> {
         let stored: Vec<Option<Vec<u32>>> = match &self.file {
             None => vec![None; keys.len()],
             Some(file) => {
-                let mut file = whole(file.lock());
-                let keys = keys.iter();
-                keys.map(|key| file.find(&words::of_key(key))).collect()
+                let words: Vec<Vec<u32>> = keys.iter().map(words::of_key).collect();
+                whole(file.lock()).find_all(&words)
             }
         };
         let made: Result<Vec<(Entry, Option<bool>)>> = keys
             .par_iter()
-            .zip(&stored)
+            .zip(stored)
             .map_init(Steps::rounded, |steps, (key, stored)| {
-                let read = stored.as_ref().map(|stored| words::entry(stored, key));
+                let read = stored.map(|stored| words::entry(&stored, key));
                 let sound = read.as_ref().map(Option::is_some);
                 let entry = match read.flatten() {
                     Some(entry) => entry,
@@ -170,8 +188,16 @@ impl Database {
             let mut file = whole(file.lock());
             write(&mut file, &keys, &made);
         }
+        let rows: Vec<_> = made
+            .iter()
+            .map(|(entry, _)| entry.plan().packed_stencils())
+            .collect();
+        let pooled = self.pool.keep(rows.iter().map(|rows| &**rows));
+        drop(rows);
         let mut known = whole(self.known.write());
-        for (key, (entry, _)) in keys.into_iter().zip(made) {
+        for ((key, (mut entry, _)), rows) in keys.into_iter().zip(made).zip(pooled) {
+            let plan = entry.plan_mut();
+            plan.stencils = Stencils::pooled(plan.ring_size, rows);
             known.add(key, entry);
         }
         Ok(())

@@ -16,7 +16,7 @@ use std::ops::Range;
 /// What a database begins with. The line breaks show whether something took it for text.
 pub const MAGIC: [u8; 16] = *b"hullform plans\r\n";
 /// Of the layout *and* of what builds plans: a file of another version is of no use. `tests/database.rs` tells when it must change.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// What a record begins with. Programs of two versions may have one file open, which the newer has begun anew.
 const RECORD: u32 = 0x4e41_4c00 + VERSION;
 /// The bytes of the header.
@@ -97,14 +97,6 @@ fn sum_of(record: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// A record's key and entry.
-pub struct Parts {
-    /// The key's words.
-    pub key: Vec<u32>,
-    /// The entry's words.
-    pub entry: Vec<u32>,
-}
-
 /// Where the record that begins at a place ends; None where none begins that is whole.
 fn end_of(bytes: &[u8], at: usize) -> Option<usize> {
     if word(bytes, at)? != RECORD {
@@ -116,16 +108,23 @@ fn end_of(bytes: &[u8], at: usize) -> Option<usize> {
     (key <= all && word(record, 12)? == sum_of(record)).then_some(end)
 }
 
-/// The key and the entry of a whole record; None where it is none.
-pub fn parts(bytes: &[u8]) -> Option<Parts> {
-    if end_of(bytes, 0)? != bytes.len() {
-        return None;
-    }
-    let words = bytes[HEAD..].chunks_exact(4);
-    let words = words.map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
-    let mut key: Vec<u32> = words.collect();
-    let entry = key.split_off(word(bytes, 8)? as usize);
-    Some(Parts { key, entry })
+fn words(bytes: &[u8]) -> impl ExactSizeIterator<Item = u32> {
+    let (words, _) = bytes.as_chunks::<4>();
+    words.iter().map(|&word| u32::from_le_bytes(word))
+}
+
+/// The words of the key of a record that [`scan`] found.
+pub fn key(record: &[u8]) -> Option<Box<[u32]>> {
+    let count = word(record, 8)? as usize;
+    Some(words(record.get(HEAD..HEAD + 4 * count)?).collect())
+}
+
+/// The words of the entry of a whole record that has this key; None where it is none.
+pub fn entry(record: &[u8], key: &[u32]) -> Option<Vec<u32>> {
+    let is_whole = end_of(record, 0)? == record.len() && word(record, 8)? as usize == key.len();
+    let (own, entry) = record.get(HEAD..)?.split_at_checked(4 * key.len())?;
+    let is_it = is_whole && words(own).eq(key.iter().copied());
+    is_it.then(|| words(entry).collect())
 }
 
 /// The records from a place on, each where it begins and ends, and how many bytes are none of any.

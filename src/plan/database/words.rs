@@ -10,6 +10,8 @@ use crate::plan::configuration::Configuration;
 use crate::plan::database::check;
 use crate::plan::database::entry::{Entry, Key, Kind};
 use crate::plan::edge::EdgePlan;
+use crate::plan::lists::Lists;
+use crate::plan::stencil_rows::StencilRows;
 use crate::plan::stencils::Stencils;
 use crate::plan::strip::{Crease, Stretch, Strip};
 use crate::plan::tree::Node;
@@ -57,12 +59,7 @@ pub fn of_entry(entry: &Entry) -> Vec<u32> {
     plan.nodes
         .iter()
         .for_each(|node| put_node(&mut words, node));
-    words.push(plan.stencils.len() as u32);
-    for number in 0..plan.stencils.len() {
-        let corner = plan.stencils.corner(number);
-        words.push(plan.stencils.level(number) | corner.map_or(0, |corner| corner + 1) << 8);
-        put_weights(&mut words, &plan.stencils.weights(number));
-    }
+    put_rows(&mut words, &plan.packed_stencils());
     for tangents in &plan.nearby {
         words.push(u32::from(tangents.is_some()));
         for row in tangents.iter().flatten() {
@@ -93,6 +90,15 @@ pub fn of_entry(entry: &Entry) -> Vec<u32> {
 fn put_list(words: &mut Vec<u32>, list: &[u32]) {
     words.push(list.len() as u32);
     words.extend_from_slice(list);
+}
+
+fn put_rows(words: &mut Vec<u32>, rows: &StencilRows) {
+    words.push(rows.rows.len() as u32);
+    words.extend(rows.rows.as_flattened());
+    for lists in [&rows.sets, &rows.patterns] {
+        put_list(words, lists.ends());
+        words.extend(&lists.words);
+    }
 }
 
 fn put_weights(words: &mut Vec<u32>, weights: &[f64]) {
@@ -171,14 +177,14 @@ fn put_stretch(words: &mut Vec<u32>, stretch: &Stretch) {
 /// Reads words from the first to the last; None beyond.
 struct Words<'a>(&'a [u32]);
 
-impl Words<'_> {
+impl<'a> Words<'a> {
     fn next(&mut self) -> Option<u32> {
         let (&first, rest) = self.0.split_first()?;
         self.0 = rest;
         Some(first)
     }
 
-    fn take(&mut self, count: usize) -> Option<&[u32]> {
+    fn take(&mut self, count: usize) -> Option<&'a [u32]> {
         let (taken, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(taken)
@@ -219,6 +225,21 @@ impl Words<'_> {
     fn weights(&mut self, ring: usize) -> Option<Vec<f64>> {
         let words = self.take(ring)?.iter();
         Some(words.map(|&word| f32::from_bits(word).into()).collect())
+    }
+
+    fn rows(&mut self, ring: usize) -> Option<StencilRows> {
+        let count = self.count()?;
+        let (rows, _) = self.take(count.checked_mul(2)?)?.as_chunks::<2>();
+        let rows = rows.to_vec();
+        let (sets, patterns) = (self.lists()?, self.lists()?);
+        StencilRows::checked(ring, rows, sets, patterns)
+    }
+
+    fn lists(&mut self) -> Option<Lists> {
+        let count = self.count()?;
+        let ends = self.take(count)?;
+        let words = self.take(ends.last().map_or(0, |&end| end as usize))?;
+        Lists::cut(words, ends)
     }
 
     fn node(&mut self) -> Option<Node> {
@@ -297,18 +318,7 @@ impl Words<'_> {
         let ring = ring_size as usize;
         let nodes = self.count()?;
         let nodes: Option<Vec<Node>> = (0..nodes).map(|_| self.node()).collect();
-        let count = self.count()?;
-        let mut stencils = Stencils::new(ring, false);
-        for _ in 0..count {
-            let word = self.next()?;
-            let corner = (word >> 8).checked_sub(1).filter(|&corner| corner < 255);
-            if word >> 8 > 0 && corner.is_none() {
-                return None;
-            }
-            let weights = self.take(ring)?.iter();
-            let weights = weights.map(|&word| f32::from_bits(word).into());
-            stencils.push(word & 255, corner, weights);
-        }
+        let stencils = Stencils::of(ring, self.rows(ring)?);
         let mut nearby: [Option<[Vec<f64>; 2]>; 4] = Default::default();
         for tangents in &mut nearby {
             if self.flag()? {

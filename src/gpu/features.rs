@@ -20,6 +20,8 @@ pub use extra::ExtraFeatures;
 pub struct OptionalFeatures {
     /// Wireframes (`fillModeNonSolid`).
     pub fill_mode_non_solid: bool,
+    /// Lines that are wider than a pixel (`wideLines`).
+    pub wide_lines: bool,
     /// The backend that cuts patches in geometry shaders (`geometryShader`).
     pub geometry_shader: bool,
     /// Shader invocation counts (`pipelineStatisticsQuery`).
@@ -43,6 +45,7 @@ pub struct OptionalFeatures {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Enabled {
     pub(super) fill_mode_non_solid: bool,
+    pub(super) wide_lines: bool,
     pub(super) geometry_shader: bool,
     pub(super) multi_draw_indirect: bool,
     pub(super) multiview: bool,
@@ -192,6 +195,7 @@ impl Support {
         }
         Ok(Enabled {
             fill_mode_non_solid: on(core.fill_mode_non_solid),
+            wide_lines: on(core.wide_lines),
             geometry_shader: on(core.geometry_shader),
             multi_draw_indirect: on(core.multi_draw_indirect)
                 && on(core.draw_indirect_first_instance),
@@ -224,6 +228,7 @@ impl Support {
         set(&mut vulkan12.scalar_block_layout, true);
         let optional = self.optional;
         set(&mut core.fill_mode_non_solid, optional.fill_mode_non_solid);
+        set(&mut core.wide_lines, optional.wide_lines);
         set(&mut core.geometry_shader, optional.geometry_shader);
         set(
             &mut core.pipeline_statistics_query,
@@ -265,6 +270,7 @@ impl Support {
         self.scalar_block_layout = scalar.scalar_block_layout != 0;
         self.optional = OptionalFeatures {
             fill_mode_non_solid: core.fill_mode_non_solid != 0,
+            wide_lines: core.wide_lines != 0,
             geometry_shader: core.geometry_shader != 0,
             pipeline_statistics_query: core.pipeline_statistics_query != 0,
             sample_rate_shading: core.sample_rate_shading != 0,

@@ -2,7 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::features::extension::has_extension;
-use crate::gpu::{Enabled, ExtraFeatures, FeatureChain, failed};
+use crate::gpu::{
+    Enabled, ExtraFeatures, FeatureChain, Memory, MemoryBlock, MemoryRequest, failed,
+};
 use crate::host::Instance;
 use crate::host::choice::{DeviceInfo, choose, devices};
 use crate::host::instance::unavailable;
@@ -172,6 +174,11 @@ impl Device {
         allocator.unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Its memory, locked for each piece alone: while something large is made of it, others get theirs.
+    pub fn memory(&self) -> SharedMemory<'_> {
+        SharedMemory(self)
+    }
+
     /// Whether it is the CPU itself.
     pub fn is_software(&self) -> bool {
         self.0.info.kind == vk::PhysicalDeviceType::CPU
@@ -291,6 +298,20 @@ impl Device {
         // SAFETY: the device is live.
         let idle = unsafe { self.raw().device_wait_idle() };
         matches!(idle, Ok(()) | Err(vk::Result::ERROR_DEVICE_LOST))
+    }
+}
+
+/// A device's memory, for many threads at once: see [`Device::memory`].
+pub struct SharedMemory<'a>(&'a Device);
+
+// SAFETY: as the allocator, which is locked for each call.
+unsafe impl Memory for SharedMemory<'_> {
+    fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<MemoryBlock> {
+        Memory::allocate(&mut self.0.allocator(), request)
+    }
+
+    fn free(&mut self, block: MemoryBlock) {
+        Memory::free(&mut self.0.allocator(), block);
     }
 }
 

@@ -29,7 +29,7 @@ use std::time::Instant;
 /// Samples a pixel.
 const SAMPLES: u32 = 4;
 /// Pixels are drawn as squares of so many, where the device's limits allow, and averaged.
-const SUPERSAMPLING: u32 = 2;
+pub const SUPERSAMPLING: u32 = 2;
 /// Nothing: the background comes when the picture is composed.
 pub const CLEAR: [f32; 4] = [0.0; 4];
 

@@ -48,10 +48,10 @@ impl Bench {
         let (device, layout) = (self.device().raw(), self.layout());
         // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
         let surface = unsafe {
-            let allocator = &mut *self.device().allocator();
+            let memory = &mut self.device().memory();
             TessellatedSurface::new(
                 device,
-                allocator,
+                memory,
                 layout,
                 model,
                 prepared,
@@ -163,7 +163,7 @@ impl Loaded<'_> {
         // SAFETY: the upload has been waited for.
         unsafe {
             self.surface
-                .finish_upload(device.raw(), &mut device.allocator());
+                .finish_upload(device.raw(), &mut device.memory());
         }
         Ok(())
     }
@@ -206,9 +206,9 @@ impl Loaded<'_> {
     /// As [`TessellatedSurface::write_draws`].
     pub fn bring(&mut self, list: &DrawList) -> Result<()> {
         let device = self.bench.device();
-        let allocator = &mut device.allocator();
-        // SAFETY: device and allocator made the surface; every submission has been waited for.
-        unsafe { self.surface.write_draws(device.raw(), allocator, list) }
+        let memory = &mut device.memory();
+        // SAFETY: device and memory made the surface; every submission has been waited for.
+        unsafe { self.surface.write_draws(device.raw(), memory, list) }
     }
 
     /// Computes the control points that a list needs and no cache has, where they are cached: how many these are. In a submission of its own.

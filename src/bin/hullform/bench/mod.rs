@@ -1,5 +1,6 @@
 //! `hullform bench`: what a frame costs, by model, method, level and backend, in time and in work.
 
+mod against;
 mod plot;
 mod row;
 mod subject;
@@ -20,6 +21,7 @@ use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Global, Json, Size};
 use crate::output::{self, Contents};
 use crate::{model, print, print_json, progress};
+use against::Saved;
 use row::Row;
 use subject::Subject;
 
@@ -102,6 +104,9 @@ pub struct Arguments {
     /// Write a picture of them: times over levels
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// Tell what changed since a run that was saved with --json
+    #[arg(long, value_name = "OLD.json")]
+    against: Option<PathBuf>,
 }
 
 impl Arguments {
@@ -143,7 +148,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
         .models
         .iter()
         .filter_map(|path| model::file(Some(path)))
+        .chain(arguments.against.as_deref())
         .collect();
+    let saved = arguments.against.as_deref().map(Saved::read).transpose()?;
     let json = match &arguments.json {
         Some(Json::File(path)) => Some(("--json", path.as_path())),
         _ => None,
@@ -161,11 +168,15 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     }
     row::set_ratios(&mut rows);
     let info = gpu.device.info();
-    let report = json!({
+    let mut report = json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
         "rows": rows.iter().map(Row::json).collect::<Vec<Value>>(),
     });
+    let compared = saved.map(|saved| saved.compared(&report));
+    if let Some(compared) = &compared {
+        report["against"] = compared.lines().collect();
+    }
     let title = format!("{}, {} {}", info.name, info.driver.name, info.driver.info);
     gpu.finish()?;
     let as_json: &Contents = &|out| writeln!(out, "{report:#}");
@@ -182,7 +193,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     if arguments.json == Some(Json::Print) || global.prints_json() {
         print_json(&report)
     } else {
-        print(&row::as_text(&title, &rows))
+        let table = row::as_text(&title, &rows);
+        let texts: Vec<String> = [table].into_iter().chain(compared).collect();
+        print(&texts.join("\n"))
     }
 }
 

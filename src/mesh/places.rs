@@ -92,14 +92,6 @@ impl Places {
         slot
     }
 
-    /// The place of a number, if it was met.
-    pub fn find(&self, number: u32) -> Option<usize> {
-        match &self.marks {
-            Some(marks) => marks.get(number),
-            None => usize::from(self.slots[self.slot(number)]).checked_sub(1),
-        }
-    }
-
     /// The place of a number; the next one if it was not met before.
     pub fn of(&mut self, number: u32) -> usize {
         let next = self.found.len();
@@ -143,11 +135,9 @@ mod tests {
             let number = |i: usize| (i as u32 * 7919) % 10_007;
             let mut places = Places::default();
             for i in 0..count {
-                assert_eq!(places.find(number(i)), None, "{i} of {count}");
                 assert!(places.add(number(i)), "{i} of {count}");
             }
             for i in 0..count {
-                assert_eq!(places.find(number(i)), Some(i), "{i} of {count}");
                 assert_eq!(places.of(number(i)), i, "{i} of {count}");
             }
             assert!(places.found().iter().copied().eq((0..count).map(number)));

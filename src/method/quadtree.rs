@@ -111,26 +111,6 @@ const AT_A_TIME: usize = 1 << 13;
 /// Most short rings and their orders take less.
 const RING: usize = 36;
 
-/// How many of the parts are looked at in parallel before what they show is kept once: fewer where much is around them.
-fn some(topology: &Topology, parts: &[Part]) -> usize {
-    let around = |part: &Part| match topology.face(part.face) {
-        quad @ [_, _, _, _] => {
-            let faces = quad
-                .iter()
-                .map(|&vertex| topology.vertex_faces(vertex).len());
-            faces.sum()
-        }
-        face => face.len(),
-    };
-    let mut total = 0;
-    let fit = parts.iter().take(AT_A_TIME).take_while(|part| {
-        let before = total;
-        total += around(part);
-        before < 16 * AT_A_TIME
-    });
-    fit.count()
-}
-
 /// Makes room for patches of so many control vertices.
 fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
     pass.patches.reserve_exact(patches);
@@ -154,10 +134,14 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     reserve(&mut regular, regular_count, 16);
     reserve(&mut short.pass, parts.len() - regular_count, RING);
     let mut all = Vec::with_capacity(AT_A_TIME.min(parts.len()));
+    let crowded = bounded::is_crowded(model.topology());
     let mut rest = &parts[..];
     while !rest.is_empty() {
         let parts;
-        (parts, rest) = rest.split_at(some(model.topology(), rest));
+        (parts, rest) = rest.split_at(match crowded {
+            true => bounded::some(model.topology(), rest, AT_A_TIME),
+            false => AT_A_TIME.min(rest.len()),
+        });
         let found = parts.par_iter().map(|&part| found(model, &smooth, part));
         found.collect_into_vec(&mut all);
         for (&part, found) in parts.iter().zip(all.drain(..)) {

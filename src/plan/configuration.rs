@@ -168,8 +168,7 @@ impl Ring {
                     .to_bits(),
             );
         }
-        walk.edges(&faces, corners as usize);
-        walk.words.shrink_to_fit();
+        walk.edges(&faces, corners);
         Ring {
             vertices: walk.vertices.found().to_vec(),
             configuration: Configuration { words: walk.words },
@@ -318,44 +317,45 @@ impl Walk<'_> {
         self.words.push(chaikin | smooth << 1);
     }
 
-    fn number(&mut self, vertex: u32) -> u32 {
-        self.vertices.of(vertex) as u32
-    }
-
     fn face(&mut self, start: Start) {
         let vertices = self.topology.face(start.face);
         let arity = vertices.len() as u32;
         self.words.push(arity);
         for i in 0..arity {
-            let number = self.number(vertices[start.corner(i, arity) as usize]);
-            self.words.push(number);
+            let vertex = vertices[start.corner(i, arity) as usize];
+            self.words.push(self.vertices.of(vertex) as u32);
         }
     }
 
-    /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them.
-    fn edges(&mut self, faces: &[Start], corners: usize) {
+    /// The sharp edges at the first `corners` vertices, each once, in the order in which the faces show them. The words tell the numbers of the faces' vertices.
+    fn edges(&mut self, faces: &[Start], corners: u32) {
+        let topology = self.topology;
         let mut seen = Places::default();
+        let mut at = 2;
         for start in faces {
-            let edges = self.topology.face_edges(start.face);
+            let (vertices, edges) = (topology.face(start.face), topology.face_edges(start.face));
             let arity = edges.len() as u32;
-            for &number in (0..arity).map(|i| &edges[start.edge(i, arity) as usize]) {
-                let edge = self.topology.edge(number);
-                if !is_sharp(edge.sharpness) {
+            for i in 0..arity {
+                let next = if i + 1 == arity { 0 } else { i + 1 };
+                let [a, b] = [i, next].map(|i| self.words[at + 1 + i as usize]);
+                if a.min(b) >= corners {
                     continue;
                 }
-                let ends = edge.vertices.map(|vertex| self.vertices.find(vertex));
-                let [a, b] = ends.map(|end| end.expect("the faces have their edges' ends"));
-                if a.min(b) < corners && seen.add(number) {
-                    let ends = if a < b { [a, b] } else { [b, a] };
-                    let mut next = self.topology.next_sharpness(number);
-                    if a > b {
-                        next.reverse();
-                    }
-                    self.words.extend(ends.map(|end| end as u32));
-                    self.words
-                        .extend([edge.sharpness, next[0], next[1]].map(f32::to_bits));
+                let number = edges[start.edge(i, arity) as usize];
+                let edge = topology.edge(number);
+                let alone = topology.edge_faces(number).len() == 1;
+                if !is_sharp(edge.sharpness) || !(alone || seen.add(number)) {
+                    continue;
                 }
+                let [mut near, mut far] = topology.next_sharpness(number);
+                if (vertices[start.corner(i, arity) as usize] == edge.vertices[0]) != (a < b) {
+                    (near, far) = (far, near);
+                }
+                let [sharpness, near, far] = [edge.sharpness, near, far].map(f32::to_bits);
+                let words = [a.min(b), a.max(b), sharpness, near, far];
+                self.words.extend(words);
             }
+            at += 1 + arity as usize;
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::method::quadtree::agreement::agreed_edges;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, is_turned_corner, vertex_rows};
-use crate::method::quadtree::subjects::{Known, LONG, Line, Point, Shared, Subject};
+use crate::method::quadtree::subjects::{Known, LONG, Line, LongRings, Point, Shared, Subject};
 use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side, SmoothQuads};
 
 /// The levels that a patch can be drawn at.
@@ -135,6 +135,7 @@ impl Borders {
             agreed: &agreed,
             in_ring: vec![u16::MAX; topology.vertex_count()],
             stars: FxHashMap::default(),
+            long_rings: LongRings::default(),
             strips: FxHashMap::default(),
             lines: &lines,
             vertices: &vertices,
@@ -186,6 +187,7 @@ struct Builder<'a> {
     in_ring: Vec<u16>,
     /// The rings of points that have none of their own.
     stars: FxHashMap<usize, Rc<Ring>>,
+    long_rings: LongRings,
     packed: &'a mut PackedPlans,
     /// Where lists of places begin.
     lists: FxHashMap<List, u32>,
@@ -335,8 +337,9 @@ impl Builder<'_> {
             }
             match self.lines.get(topology, line) {
                 Some(known) => {
-                    let long = known.ring.is_none().then(|| line.ring(topology));
-                    let ring = known.ring.as_deref().or(long.as_ref());
+                    let long = known.ring.is_none();
+                    let long = long.then(|| self.long_rings.get(topology, line));
+                    let ring = known.ring.as_deref().or(long.as_deref());
                     let ring = ring.expect("it is kept, or was just found");
                     let flags = flags ^ self.line_flags(part.face, corner, line, ring, known.plan);
                     let flipped = 2 * (flags & abi::USE_FLIPPED);
@@ -413,7 +416,7 @@ impl Builder<'_> {
         if let Some(known) = self.stars.get(&number) {
             return known.clone();
         }
-        let ring = Rc::new(point.ring(self.topology));
+        let ring = self.long_rings.get(self.topology, point);
         if ring.vertices.len() <= LONG {
             self.stars.insert(number, ring.clone());
         }

@@ -8,6 +8,7 @@ use crate::error::{Error, Place, Result};
 use crate::mesh::Model;
 use crate::mesh::sharpness::is_semi_sharp;
 use crate::mesh::topology::Topology;
+use crate::method::patches::Part;
 
 /// Rings of so many corners of faces are what models are made of, however many there are.
 const ORDINARY: u64 = 1 << 10;
@@ -79,6 +80,38 @@ fn is_varied(topology: &Topology, vertex: u32) -> bool {
         }
     }
     false
+}
+
+/// Whether anywhere so much meets that rings of some thousand parts take more memory than is worth it.
+pub fn is_crowded(topology: &Topology) -> bool {
+    let vertices = 0..topology.vertex_count() as u32;
+    let mut around = vertices.map(|vertex| topology.vertex_faces(vertex).len());
+    let mut faces = 0..topology.face_count() as u32;
+    topology.quads().is_none() && faces.any(|face| topology.face(face).len() > CROWD)
+        || around.any(|around| around > CROWD)
+}
+
+/// So many faces or corners are a crowd.
+const CROWD: usize = 64;
+
+/// How many of the parts, `most` at most, are looked at in parallel before what they show is kept once: fewer where much is around them.
+pub fn some(topology: &Topology, parts: &[Part], most: usize) -> usize {
+    let around = |part: &Part| match topology.face(part.face) {
+        quad @ [_, _, _, _] => {
+            let faces = quad
+                .iter()
+                .map(|&vertex| topology.vertex_faces(vertex).len());
+            faces.sum()
+        }
+        face => face.len(),
+    };
+    let mut total = 0;
+    let fit = parts.iter().take(most).take_while(|part| {
+        let before = total;
+        total += around(part);
+        before < 16 * most
+    });
+    fit.count()
 }
 
 /// Counts what surrounds faces, each face once.

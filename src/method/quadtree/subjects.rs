@@ -1,5 +1,7 @@
 //! What has plans of its own beside the insides of patches: edges and vertices, each planned once for all that look alike.
 
+use std::collections::VecDeque;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -224,6 +226,28 @@ impl Shared {
         (place != NONE).then(|| &self.known[place as usize])
     }
 }
+
+/// Long rings, of which the last are kept: one patch after another in an n-gon needs the same.
+#[derive(Default)]
+pub struct LongRings(VecDeque<(Kind, usize, Rc<Ring>)>);
+
+impl LongRings {
+    /// The ring of a subject.
+    pub fn get(&mut self, topology: &Topology, subject: impl Subject) -> Rc<Ring> {
+        let (kind, number) = (subject.kind(), subject.number(topology));
+        let is_it = |known: &&(Kind, usize, Rc<Ring>)| (known.0, known.1) == (kind, number);
+        if let Some((.., ring)) = self.0.iter().find(is_it) {
+            return ring.clone();
+        }
+        let ring = Rc::new(subject.ring(topology));
+        self.0.truncate(FEW - 1);
+        self.0.push_front((kind, number, ring.clone()));
+        ring
+    }
+}
+
+/// So many long rings are kept: a patch has four edges and four corners.
+const FEW: usize = 16;
 
 /// So many rings are on their way at a time.
 const AT_A_TIME: usize = 1 << 8;

@@ -32,7 +32,7 @@ impl Haste {
 
     /// The level at which a scene is drawn that has changed, instead of a greater one.
     pub fn level(&self, level: f32) -> f32 {
-        match self.full.filter(|&full| full > SLOW) {
+        match self.full.filter(|_| self.is_slow()) {
             // Vertices go by the square.
             Some(full) => (level * (QUICK / full).sqrt() as f32)
                 .floor()
@@ -40,6 +40,11 @@ impl Haste {
                 .min(level),
             None => level,
         }
+    }
+
+    /// Whether the full scene takes long.
+    pub fn is_slow(&self) -> bool {
+        self.full.is_some_and(|full| full > SLOW)
     }
 
     /// Tells that a scene was drawn, coarser or not.
@@ -69,7 +74,9 @@ mod tests {
         assert_eq!(haste.level(8.0), 8.0);
         haste.took(0.05);
         assert_eq!(haste.level(8.0), 8.0);
+        assert!(!haste.is_slow());
         haste.took(1.0);
+        assert!(haste.is_slow());
         assert_eq!((haste.level(8.0), haste.level(1.5)), (1.0, 1.0));
         haste.took(0.16);
         assert_eq!(haste.level(64.0), 32.0);

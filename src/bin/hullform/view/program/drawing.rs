@@ -36,6 +36,15 @@ impl Drawing {
         edited == *self && other != self
     }
 
+    /// Whether all control vertices are where they are in another.
+    pub fn has_places_of(&self, other: &Drawing) -> bool {
+        let places = |&(number, moves, _): &(u64, u64, u64)| (number, moves);
+        self.parts
+            .iter()
+            .map(places)
+            .eq(other.parts.iter().map(places))
+    }
+
     /// What the colours of its map mean.
     pub fn legend(&self) -> Option<&Legend> {
         self.legend.as_ref()

@@ -53,9 +53,11 @@ impl Program {
         let waits = !self.anew && self.stage.waits(&self.viewer, &self.context, running);
         // Of edits the panels tell at once.
         let last = self.drawn.as_ref().filter(|_| !self.fresh);
-        let held = last.is_some_and(|last| drawing.is_edit_of(last))
-            && self.haste.breather().is_some()
-            && !shooting;
+        let held = last.is_some_and(|last| {
+            // Where it takes long, colours of the cage come with the surface that they are of.
+            let later = drawing.has_places_of(last) && self.haste.is_slow() && self.is_at_work();
+            drawing.is_edit_of(last) && (later || self.haste.breather().is_some())
+        }) && !shooting;
         let mut scene = changed && !area.is_empty() && !waits && !held;
         let full = self.viewer.cutting.cut();
         let cut = match moved && !self.anew && !shooting {

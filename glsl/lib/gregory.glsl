@@ -41,7 +41,7 @@ vec3 patch_point(Patch record, uint number) {
     if (number < FAR) return near;
     vec3 far = edge_point(record, i, EDGE_FAR);
     if (number < INSIDE_NEAR) return far;
-    // The point inside of one next to a corner (section 3.2).
+    // The point inside of one next to a corner.
     bool at_end = number >= INSIDE_FAR;
     vec3 corner = patch_control(record, at_end ? j : i).position;
     vec3 next = at_end ? far : near;

@@ -46,7 +46,7 @@ vec3 patch_point(Patch record, uint number) {
     precise vec3 last = direction * edge_point(record, i, EDGE_LAST);
     if (number < LAST) return first;
     if (number < THIRDS) return last;
-    // Half of what both faces' sum is, and the field (section 4).
+    // Half of what both faces' sum is, and the field.
     vec4 all = cosines[bases.own[0] + record.plan];
     float c0 = all[i];
     float c1 = all[(i + 1u) & 3u];

@@ -2,7 +2,7 @@
 //! points for positions, and two patches of tangents that agree along edges where positions do not: so normals are continuous and the surface itself need not
 //! be.
 //!
-//! At corners positions and tangents are the limit's, and on regular faces all is. A tangent patch is as fine along u as 2 and along v as 3 (section 4): at its
+//! At corners positions and tangents are the limit's, and on regular faces all is. A tangent patch is as fine along u as 2 and along v as 3: at its
 //! sides it has the tangents of these edges and the derivatives across the others, which `spokes.rs` tells.
 
 use glam::{Vec2, Vec3};
@@ -100,7 +100,7 @@ fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     numbers.on_edge(surface.position, [edge, FIELD], sides[edge].tangent, along)
 }
 
-/// The tangent along an edge, whose middle is that of the edge itself, and the derivatives across it (section 4): half of what both faces' sum is, and the field.
+/// The tangent along an edge, whose middle is that of the edge itself, and the derivatives across it: half of what both faces' sum is, and the field.
 fn side(numbers: &Numbers, bicubic: &Bicubic, edge: usize, [c0, c1]: [f32; 2]) -> Side {
     let direction = numbers.direction_of(edge);
     let first = direction * numbers.edge_point(edge, FIRST);

@@ -3,7 +3,8 @@
 //!
 //! At corners they have the limit and its tangent plane, and on regular quads all of it. Positions on edges are the paper's cubics for both shapes, so quads and triangles
 //! may meet. For triangles the paper takes Catmull and Clark's masks; here corners have the limit of the scheme, and what crosses an edge of regular triangles
-//! is the box spline's own, derived in `spokes/ring.rs`: the paper's does not reproduce planes there.
+//! is the box spline's own, derived in `spokes/ring.rs`: what quads have there would
+//! not reproduce planes. At a vertex among both the plane is the paper's own.
 //!
 //! The derivatives are those of the surface, with the quotients at the inner points; on edges the plane comes from the edge's field (`spokes.rs`), which is
 //! the same for both faces to the last bit.
@@ -95,7 +96,7 @@ fn net<const N: usize>(pass: &Pass, numbers: &Numbers, patch: usize) -> Net<N> {
     }
 }
 
-/// The point inside of one next to a corner (section 3.2), by what the edge's field has there and the cosines at this corner and the edge's other one. For a quad
+/// The point inside of one next to a corner, by what the edge's field has there and the cosines at this corner and the edge's other one. For a quad
 /// (c1 p + (3 - 2 c0 - c1) e + 2 c0 e' + r) / 3, for a triangle (c1 p + (4 - 2 c0 - c1) e + 2 c0 e' + r) / 4.
 fn inner_point<const N: usize>(
     corner: Vec3,
@@ -192,7 +193,7 @@ fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoi
     on_border(&net, &numbers, surface, on, along)
 }
 
-/// Section 3.3: the sums over corners, over edges and inside, with the derivative of each by its weights.
+/// The sums over corners, over edges and inside, with the derivative of each by its weights.
 fn triangle_surface(net: &Net<3>, w: [f32; 3]) -> Surface {
     let Net {
         corners: p,

@@ -3,7 +3,7 @@
 //!
 //! **Tangents.** Around a smooth vertex t(i - 1) + t(i + 1) = 2 c t(i), where c is the cosine of 2 pi / n inside, and of pi / k where k faces lie at a boundary.
 //! Along an edge from a to b both surfaces have the tangent u, a quadratic from t at a to minus t at b. The derivative across it is v on one side and v' on the
-//! other, cubics, and both planes are one (G1) if v + v' is u times a linear function (Loop, Schaefer 2008, section 4). So v = m u + x and v' = m' u - x, where x
+//! other, cubics, and both planes are one (G1) if v + v' is u times a linear function (Loop, Schaefer 2008). So v = m u + x and v' = m' u - x, where x
 //! belongs to the edge: its *field*. At the ends it follows from the tangents, and the normal on the edge is u x x for both faces, to the last bit.
 
 mod edge;
@@ -216,7 +216,7 @@ impl<'a> Spokes<'a> {
         (numbers, cosines)
     }
 
-    /// The point of a bicubic patch inside of a quad, next to its corner (2008, section 3).
+    /// The point of a bicubic patch inside of a quad, next to its corner (Loop, Schaefer 2008).
     pub fn inner(&self, face: u32, corner: u32) -> Mask {
         let ring = self.ring(self.topology.face(face)[corner as usize]);
         ring.inner(ring.place_of_edge(self.topology.face_edges(face)[corner as usize]))

@@ -48,7 +48,7 @@ impl Around {
         self.ends.len()
     }
 
-    /// Section 3: the point inside of face i.
+    /// The point inside of face i.
     fn inner(&self, i: usize) -> DVec3 {
         let n = self.n();
         (n as f64 * self.vertex + 2.0 * (self.ends[i] + self.ends[(i + 1) % n]) + self.fars[i])
@@ -64,7 +64,7 @@ impl Around {
         (0..self.n()).map(|i| self.inner(i)).sum::<DVec3>() / self.n() as f64
     }
 
-    /// Section 4: the tangent along edge `towards`.
+    /// The tangent along edge `towards`.
     fn tangent(&self, towards: usize) -> DVec3 {
         let n = self.n() as f64;
         let root = (4.0 + (PI / n).cos().powi(2)).sqrt();
@@ -98,7 +98,7 @@ fn net(around: &[Around; 4]) -> Net {
     ]
 }
 
-/// The tangents by u, three by four, as section 4 has them: `around` begins at the corner (0, 0), and goes counter-clockwise.
+/// The tangents by u, three by four: `around` begins at the corner (0, 0), and goes counter-clockwise.
 fn by_u(b: &Net, around: &[Around; 4]) -> [[DVec3; 3]; 4] {
     let mut u: [[DVec3; 3]; 4] =
         std::array::from_fn(|j| std::array::from_fn(|i| 3.0 * (b[j][i + 1] - b[j][i])));

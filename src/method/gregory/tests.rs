@@ -49,7 +49,7 @@ impl Around {
         self.middles.len() as f64
     }
 
-    /// Section 3.1.
+    /// The limit.
     fn p(&self) -> DVec3 {
         let n = self.n();
         let sum: DVec3 = self.middles.iter().chain(&self.centres).sum();
@@ -71,7 +71,7 @@ impl Around {
         self.p() + 2.0 / 3.0 * lambda * q
     }
 
-    /// Section 3.2: r of edge i; on the left of the edge for the face that it leaves, on the right for the one before.
+    /// r of edge i; on the left of the edge for the face that it leaves, on the right for the one before.
     fn r(&self, i: usize) -> DVec3 {
         let n = self.middles.len();
         let [next, last] = [(i + 1) % n, (i + n - 1) % n];
@@ -159,7 +159,7 @@ fn quads_have_the_published_points_and_their_own_normals() {
     );
 }
 
-/// Section 3.3, of the patch's own fifteen points.
+/// By the form of degree four of the patch's own fifteen points.
 #[test]
 fn triangles_are_quartics_with_their_own_normals() {
     let model = triangular_ball();

@@ -125,7 +125,7 @@ impl Ring {
             self.mixed_tangents()
         } else {
             let [next, previous] = unturned(corners, corner, &limit);
-            // 2009, section 3.1, and 2008, section 3: the same plane with lengths of their own.
+            // The limit's plane with the lengths that both papers give it (Loop, Schaefer 2008; Loop, Schaefer, Ni, Castano 2009).
             let sigma = 1.0 / (4.0 + half.cos().powi(2)).sqrt();
             let length = match closed && triangles == 0 {
                 true => 1.5 * sigma / half.cos(),
@@ -154,7 +154,7 @@ impl Ring {
         }
     }
 
-    /// Of a vertex among triangles and quads the tangents along edges 0 and 1: inside those of 2009, section 3.1, over middles of edges and centres of faces;
+    /// Of a vertex among triangles and quads the tangents along edges 0 and 1: inside those of the paper of 2009, over middles of edges and centres of faces;
     /// at a boundary half of what lies between its ends, and the sine of all edges across.
     fn mixed_tangents(&self) -> [Mask; 2] {
         let n = self.faces() as f64;
@@ -237,7 +237,7 @@ impl Ring {
     }
 
     /// What the face on one side of edge i, left (1) or right (-1), has in the field of the edge next to the middle: half of a vertex. Of regular faces both sides
-    /// together are exact: of quads the third of the next edge and the sixth of the far corner (2009, section 3.2), of triangles 5/12 of the opposite vertex and
+    /// together are exact: of quads the third of the next edge and the sixth of the far corner (2009), of triangles 5/12 of the opposite vertex and
     /// 1/12 of the one behind it, which is the derivative of the box spline across its edge. Where one is no longer there, it is the mirror image.
     pub fn half(&self, i: usize, side: isize) -> Mask {
         let face = self.face_beside(i, if side > 0 { 0 } else { -1 });

@@ -105,6 +105,7 @@ void main() {
     PatchSides sides = patch_sides[bases.own[TABLES + CACHED_TABLES] + number];
     bool drawn = (decision.flags & DECIDE_FRUSTUM) == 0u || sides.hull == 0u;
     for (uint eye = 0u; eye < eyes && !drawn; ++eye) drawn = !is_outside(record, sides.hull, seen + eye);
+    drawn = drawn && (record.flags & PATCH_VACANT) == 0u;
     vec4 edges = vec4(0.0);
     float inside = 0.0;
     if (drawn) {

@@ -91,7 +91,8 @@ impl Decision {
         let record = pass.patches.get(patch)?;
         let hull = pass.hull(patch).iter();
         let points: Vec<Vec3> = hull.map(|&vertex| vertices[vertex as usize]).collect();
-        if self.frustum && !points.is_empty() && is_outside(&points, seen) {
+        let is_culled = self.frustum && !points.is_empty() && is_outside(&points, seen);
+        if is_culled || pass.is_vacant(patch) {
             return Some(Levels {
                 domain: pass.domain,
                 edges: [0.0; 4],

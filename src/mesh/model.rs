@@ -1,5 +1,7 @@
 //! A control mesh made ready for methods and GPU.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec3, Vec3};
 
 use crate::mesh::topology::Topology;
@@ -10,9 +12,17 @@ use crate::mesh::{ControlMesh, Placement};
 /// Positions are f32 relative to the mesh's [`Placement`]: whatever its size, and however far it lies from the origin, nothing is lost.
 #[derive(Clone, Debug)]
 pub struct Model {
-    mesh: ControlMesh,
-    topology: Topology,
-    placement: Placement,
+    pub(super) mesh: ControlMesh,
+    pub(super) topology: Topology,
+    pub(super) placement: Placement,
+    /// A number that no other state of a model has.
+    pub(super) revision: u64,
+}
+
+/// A number that no other state of a model has.
+pub(super) fn next_revision() -> u64 {
+    static REVISION: AtomicU64 = AtomicU64::new(1);
+    REVISION.fetch_add(1, Ordering::Relaxed)
 }
 
 /// What is smaller in local positions is zero: it is nothing beside the mesh, and products of it would leave the range of normal floats, which
@@ -25,8 +35,14 @@ impl Model {
         Model {
             topology: Topology::new(&mesh),
             placement: mesh.placement(),
+            revision: next_revision(),
             mesh,
         }
+    }
+
+    /// A number that no other state of a model has; clones share it.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The control mesh.

@@ -22,6 +22,26 @@ impl Table {
     }
 }
 
+impl Table {
+    /// The words of elements, and how many each has, for [`Table::grow`].
+    pub(super) fn grown<T: NoUninit>(elements: &[T]) -> (&[u32], usize) {
+        (bytemuck::cast_slice(elements), size_of::<T>() / 4)
+    }
+
+    /// Takes what stands behind its end in a list that only grows, of which the last word may have been half empty. Tells which words are new.
+    pub(super) fn grow(&mut self, words: &[u32], stride: usize) -> std::ops::Range<usize> {
+        self.stride = stride;
+        let known = self.words.len();
+        let same = match known.checked_sub(1) {
+            Some(last) if self.words[last] != words[last] => last,
+            _ => known,
+        };
+        self.words.truncate(same);
+        self.words.extend_from_slice(&words[same..]);
+        same..words.len()
+    }
+}
+
 impl Deref for Table {
     type Target = [u32];
 

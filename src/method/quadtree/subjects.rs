@@ -1,14 +1,13 @@
 //! What has plans of its own beside the insides of patches: edges and vertices, each planned once for all that look alike.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
-use crate::plan::database::{Entry, Kind};
-use crate::plan::{Configuration, Database, PackedPlans, PlanOptions, Ring, SmoothQuads};
+use crate::method::quadtree::store::Store;
+use crate::plan::database::Kind;
+use crate::plan::{Database, PlanOptions, Ring, SmoothQuads};
 
 /// An edge of a patch that has a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -99,49 +98,9 @@ impl Subject for Point {
     }
 }
 
-/// Plans of a database, by numbers of their own.
-pub struct Planned {
-    /// Of each configuration that was asked for, the number of its plan.
-    pub numbers: Vec<u32>,
-    /// The plans, each once.
-    pub plans: Vec<Arc<Entry>>,
-}
-
-impl Planned {
-    pub fn new<'a>(
-        wanted: impl Iterator<Item = (Kind, &'a Configuration)>,
-        options: PlanOptions,
-        database: &Database,
-    ) -> Result<Planned> {
-        let mut known: FxHashMap<(Kind, &Configuration), u32> = FxHashMap::default();
-        let mut firsts: Vec<(Kind, &Configuration)> = Vec::new();
-        let number = |wanted| {
-            *known.entry(wanted).or_insert_with(|| {
-                firsts.push(wanted);
-                firsts.len() as u32 - 1
-            })
-        };
-        let numbers = wanted.map(number).collect();
-        let mut plans: Vec<Option<Arc<Entry>>> = vec![None; firsts.len()];
-        for kind in Kind::ALL {
-            let own = (0..firsts.len()).filter(|&i| firsts[i].0 == kind);
-            let own: Vec<usize> = own.collect();
-            let configurations: Vec<&Configuration> = own.iter().map(|&i| firsts[i].1).collect();
-            let found = database.plans(kind, options, &configurations)?;
-            for (&i, (_, entry)) in own.iter().zip(found) {
-                plans[i] = Some(entry);
-            }
-        }
-        Ok(Planned {
-            numbers,
-            plans: plans.into_iter().flatten().collect(),
-        })
-    }
-}
-
 /// A subject's plan and ring.
 pub struct Known {
-    /// The number of its plan.
+    /// The number of its plan in the store.
     pub plan: u32,
     /// Its ring, which is not kept of what looks alike at first sight.
     pub ring: Option<Box<Ring>>,
@@ -152,9 +111,6 @@ pub struct Shared {
     known: Vec<Known>,
     /// Of each subject, by its number, where it stands there.
     places: Vec<u32>,
-    pub plans: Vec<Arc<Entry>>,
-    /// The number of the first among all packed plans.
-    pub first: u32,
 }
 
 impl Shared {
@@ -162,7 +118,7 @@ impl Shared {
         topology: &Topology,
         smooth: &SmoothQuads<'_>,
         subjects: impl Iterator<Item = S>,
-        packed: &mut PackedPlans,
+        store: &mut Store,
         options: PlanOptions,
         database: &Database,
     ) -> Result<Shared> {
@@ -200,12 +156,7 @@ impl Shared {
             let ring = ring.as_ref()?;
             Some((subject.kind(), &ring.configuration))
         });
-        let Planned { numbers, plans } = Planned::new(wanted, options, database)?;
-        let first = packed.headers.len() as u32;
-        for plan in &plans {
-            packed.push(plan.plan())?;
-        }
-        let mut numbers = numbers.into_iter();
+        let mut numbers = store.plans(wanted, options, database)?.into_iter();
         let mut plan_of_looks = FxHashMap::default();
         let known = looks.into_iter().zip(rings).map(|(looks, ring)| {
             let mut next = || numbers.next().expect("each ring has a plan");
@@ -225,8 +176,6 @@ impl Shared {
         Ok(Shared {
             known: known.collect(),
             places,
-            plans,
-            first,
         })
     }
 

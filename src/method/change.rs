@@ -1,0 +1,71 @@
+//! What an edit changes of what was prepared.
+
+use std::ops::Range;
+
+use crate::abi;
+
+/// Which words of a pass' tables are other ones: its patches, the numbers of control vertices, texture coordinates, and the method's own tables, in this order.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PassChange {
+    tables: Vec<Vec<Range<usize>>>,
+    /// Slots of patches, ascending.
+    slots: Vec<u32>,
+}
+
+/// Words of a patch, and of its texture coordinates.
+const PATCH_WORDS: usize = size_of::<abi::Patch>() / 4;
+const TEXTURE_WORDS: usize = size_of::<[[f32; 2]; 4]>() / 4;
+
+impl PassChange {
+    /// The tables that have changed, by their numbers, and in which words.
+    pub fn ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
+        let tables = self.tables.iter().enumerate();
+        tables.flat_map(|(table, ranges)| ranges.iter().map(move |range| (table, range.clone())))
+    }
+
+    /// The slots whose patches have changed, ascending.
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
+    /// How many words there are.
+    pub fn words(&self) -> usize {
+        self.ranges().map(|(_, range)| range.len()).sum()
+    }
+
+    pub(super) fn patches(&mut self, mut slots: Vec<u32>) {
+        slots.sort_unstable();
+        slots.dedup();
+        for &slot in &slots {
+            let slot = slot as usize;
+            self.add(0, PATCH_WORDS * slot..PATCH_WORDS * (slot + 1));
+            self.add(2, TEXTURE_WORDS * slot..TEXTURE_WORDS * (slot + 1));
+        }
+        self.slots = slots;
+    }
+
+    pub(super) fn controls(&mut self, written: &[Range<u32>], appended: Range<usize>) {
+        for range in written {
+            self.add(1, range.start as usize..range.end as usize);
+        }
+        self.add(1, appended);
+    }
+
+    pub(super) fn own(&mut self, table: usize, appended: Range<usize>) {
+        self.add(3 + table, appended);
+    }
+
+    fn add(&mut self, table: usize, range: Range<usize>) {
+        if range.is_empty() {
+            return;
+        }
+        if self.tables.len() <= table {
+            self.tables.resize(table + 1, Vec::new());
+        }
+        let ranges = &mut self.tables[table];
+        match ranges.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => ranges.push(range),
+        }
+    }
+}

@@ -97,6 +97,12 @@ impl DrawList {
         Ok(u64::from(most) * u64::from(options.rounds))
     }
 
+    /// The counters that its own batches need, in all rounds.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn counters(&self) -> u64 {
+        u64::from(self.ring_batches) * u64::from(self.options.rounds)
+    }
+
     /// Fills in draws, and what the host decides about each patch where it does.
     fn decide(&mut self, prepared: &Prepared) {
         let records = self.options.has_host_slots() || self.tagged.is_some();

@@ -76,13 +76,18 @@ impl Model {
     /// The control vertices in local units, those that no face uses at the origin. No zero is negative: whatever faces make of one has the same
     /// bits.
     pub fn positions(&self) -> Vec<Vec3> {
-        let placed = |(vertex, &position): (u32, &DVec3)| {
-            if self.topology.vertex_faces(vertex).is_empty() {
-                return Vec3::ZERO;
-            }
-            let local = self.placement.local(position);
-            DVec3::select(local.abs().cmplt(DVec3::splat(LEAST)), DVec3::ZERO, local).as_vec3()
+        let all = 0..self.mesh.vertex_count() as u32;
+        all.map(|vertex| self.position(vertex)).collect()
+    }
+
+    /// One of these; at the origin where there is no such vertex.
+    pub fn position(&self, vertex: u32) -> Vec3 {
+        let position = self.mesh.positions().get(vertex as usize);
+        let is_used = !self.topology.vertex_faces(vertex).is_empty();
+        let Some(&position) = position.filter(|_| is_used) else {
+            return Vec3::ZERO;
         };
-        (0..).zip(self.mesh.positions()).map(placed).collect()
+        let local = self.placement.local(position);
+        DVec3::select(local.abs().cmplt(DVec3::splat(LEAST)), DVec3::ZERO, local).as_vec3()
     }
 }

@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use crate::abi;
+#[cfg(feature = "vulkan")]
+use crate::method::{Prepared, Update};
 
 /// Which words of a pass' tables are other ones: its patches, the numbers of control vertices, texture coordinates, and the method's own tables, in this order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -67,5 +69,36 @@ impl PassChange {
             Some(last) if last.end == range.start => last.end = range.end,
             _ => ranges.push(range),
         }
+    }
+}
+
+#[cfg(feature = "vulkan")]
+impl Prepared {
+    /// Takes over what an update has changed in another one, which was as this one is.
+    pub(crate) fn adopt(&mut self, edited: &Prepared, update: &Update) {
+        let passes = self.passes.iter_mut().zip(&edited.passes);
+        for ((own, edited), change) in passes.zip(&update.passes) {
+            for &slot in change.slots() {
+                let slot = slot as usize;
+                own.patches[slot] = edited.patches[slot];
+                own.texture[slot] = edited.texture[slot];
+                own.sides[slot] = edited.sides[slot];
+            }
+            own.controls.resize(edited.controls.len(), 0);
+            for (table, range) in change.ranges() {
+                match table {
+                    0 | 2 => {}
+                    1 => own.controls[range.clone()].copy_from_slice(&edited.controls[range]),
+                    table => own.tables[table - 3].adopt(&edited.tables[table - 3], range),
+                }
+            }
+            let known = own.scratch_points.len();
+            own.scratch_points
+                .extend_from_slice(&edited.scratch_points[known..]);
+            own.scratch_products
+                .extend_from_slice(&edited.scratch_products[known..]);
+        }
+        self.origin = edited.origin;
+        self.plans = None;
     }
 }

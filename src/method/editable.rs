@@ -49,6 +49,7 @@ pub struct Update {
     /// By pass, which words of its tables are other ones; nothing where all are.
     pub passes: Vec<PassChange>,
     /// The version that was edited.
+    #[cfg_attr(not(feature = "vulkan"), expect(dead_code))]
     before: u64,
 }
 
@@ -59,6 +60,7 @@ impl Update {
     }
 
     /// The version that was edited.
+    #[cfg(feature = "vulkan")]
     pub(crate) fn before(&self) -> u64 {
         self.before
     }
@@ -68,7 +70,9 @@ impl std::fmt::Debug for Editable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut shown = f.debug_struct("Editable");
         shown.field("method", &self.method.name);
-        shown.field("revision", &self.revision).finish_non_exhaustive()
+        shown
+            .field("revision", &self.revision)
+            .finish_non_exhaustive()
     }
 }
 
@@ -121,7 +125,7 @@ impl Method {
 /// How much more there may be than at first.
 const OVERGROWN: usize = 4;
 /// So many words are no matter.
-const FEW_WORDS: usize = 1 << 16;
+const FEW_WORDS: usize = 1 << 18;
 
 impl Editable {
     /// What is drawn.

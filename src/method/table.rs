@@ -42,6 +42,16 @@ impl Table {
     }
 }
 
+impl Table {
+    /// Takes over some words of another one, which has as many or more.
+    #[cfg(feature = "vulkan")]
+    pub(super) fn adopt(&mut self, other: &Table, range: std::ops::Range<usize>) {
+        self.stride = other.stride;
+        self.words.resize(other.words.len(), 0);
+        self.words[range.clone()].copy_from_slice(&other.words[range]);
+    }
+}
+
 impl Deref for Table {
     type Target = [u32];
 

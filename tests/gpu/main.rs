@@ -11,6 +11,7 @@ mod cache;
 mod canvas;
 mod decide;
 mod edges;
+mod edits;
 mod flight;
 mod hexagon;
 mod instances;

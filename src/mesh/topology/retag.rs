@@ -50,7 +50,10 @@ impl Topology {
                 vertices.extend(own.vertices);
             }
         }
-        let ends = changed.edges.iter().flat_map(|&edge| self.edge(edge).vertices);
+        let ends = changed
+            .edges
+            .iter()
+            .flat_map(|&edge| self.edge(edge).vertices);
         let mut ends: Vec<u32> = ends.collect();
         ends.sort_unstable();
         ends.dedup();
@@ -59,7 +62,9 @@ impl Topology {
         }
         self.retag_vertices(mesh, &changed.vertices, &mut vertices);
         let holes = self.retag_holes(&tags, &ends, &changed.faces);
-        let around = vertices.iter().flat_map(|&vertex| self.vertex_faces(vertex));
+        let around = vertices
+            .iter()
+            .flat_map(|&vertex| self.vertex_faces(vertex));
         let mut faces: Vec<u32> = around.map(|at| at.face).collect();
         for &hole in &holes {
             faces.push(hole);

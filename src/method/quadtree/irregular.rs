@@ -75,7 +75,10 @@ impl<'a> Irregulars<'a> {
 
     /// The patch of a face that is a quad with a short ring: one of which each invocation of the control shader can have a vertex.
     pub fn of_face(&self, face: u32) -> Option<u32> {
-        self.of_faces.get(face as usize).copied().filter(|&patch| patch != NONE)
+        self.of_faces
+            .get(face as usize)
+            .copied()
+            .filter(|&patch| patch != NONE)
     }
 }
 

@@ -159,7 +159,10 @@ impl Planner {
                 for (number, change) in changes.iter_mut().enumerate() {
                     let slots = log.before.iter().filter(|(at, ..)| at.pass == number);
                     change.patches(slots.map(|(at, ..)| at.slot).collect());
-                    change.controls(&log.written[number], ends[number]..passes[number].controls.len());
+                    change.controls(
+                        &log.written[number],
+                        ends[number]..passes[number].controls.len(),
+                    );
                 }
                 Ok(changes)
             }
@@ -200,7 +203,16 @@ impl Planner {
         }
         drop(all);
         for (number, run) in runs.into_iter().enumerate() {
-            self.plan_run(number, passes, model, &smooth, wanted.faces, run, database, log)?;
+            self.plan_run(
+                number,
+                passes,
+                model,
+                &smooth,
+                wanted.faces,
+                run,
+                database,
+                log,
+            )?;
         }
         Ok(())
     }
@@ -301,7 +313,14 @@ impl Planner {
         };
         if SHORT + number == SHORT {
             let agreed = agreed_edges(topology, smooth, &patches, &slots, store);
-            agree(topology, faces, &agreed, &mut self.agreed, &patches, &mut slots);
+            agree(
+                topology,
+                faces,
+                &agreed,
+                &mut self.agreed,
+                &patches,
+                &mut slots,
+            );
         }
         let given = Given {
             topology,

@@ -85,7 +85,11 @@ pub(super) type Levels<T> = [T; abi::HIGHEST_LEVEL as usize + 1];
 
 /// The points of a patch's slot at each level, and the products of a weight and a vertex that these take. Of a corner's two points one is a normal, by two
 /// tangents.
-pub(super) fn sums(border: &abi::Border, uses: &[abi::Use], ends: &[abi::Ends]) -> (Levels<u32>, Levels<u64>) {
+pub(super) fn sums(
+    border: &abi::Border,
+    uses: &[abi::Use],
+    ends: &[abi::Ends],
+) -> (Levels<u32>, Levels<u64>) {
     let mut sums: (Levels<u32>, Levels<u64>) = Default::default();
     for level in 0..sums.0.len() {
         let mut start = abi::USES + border.plain_count;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::Vec2;
 use hullform::mesh::{BoundaryInterpolation, ControlMesh, CreaseMethod, Edit, Model, builtin};
 use hullform::method::{
-    Controls, Editable, METHODS, Method, Pass, Prepared, SurfacePoint, from_ptex, method,
+    Controls, Editable, METHODS, Method, Pass, Prepared, SurfacePoint, from_ptex,
 };
 use hullform::plan::{Database, PlanOptions};
 
@@ -136,8 +136,10 @@ fn hold(
     }
 }
 
-fn quadtree() -> &'static Method {
-    method("quadtree").expect("it is in the table")
+/// A method that plans again what edits influence.
+fn in_place() -> &'static Method {
+    let mut able = METHODS.iter().filter(|method| method.edits_in_place());
+    able.next().expect("one does")
 }
 
 /// A mesh with other rules of boundaries and creases.
@@ -179,7 +181,7 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
         ] {
             let mesh = builtin(name).expect("it is built in");
             let mut model = Model::new(under(&mesh, boundary, creasing));
-            let editable = quadtree().prepare_editable(&model, shallow(), &database);
+            let editable = in_place().prepare_editable(&model, shallow(), &database);
             let mut editable = editable.expect("sound options");
             for number in 0..8 {
                 let mut edit = model.mesh().edit();
@@ -196,7 +198,7 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
                     "{name} {boundary:?} {number} {edit:?} {:?}",
                     changes.faces()
                 );
-                let fresh = quadtree().prepare_with(&model, shallow(), &database);
+                let fresh = in_place().prepare_with(&model, shallow(), &database);
                 hold(
                     editable.prepared(),
                     &fresh.expect("sound options"),
@@ -208,7 +210,10 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
             }
         }
     }
-    assert!(whole < 4, "most is planned again where it has changed alone");
+    assert!(
+        whole < 4,
+        "most is planned again where it has changed alone"
+    );
 }
 
 /// So many edits in a run by hand: `HULLFORM_EDITS=10000`, where every one is held against a fresh preparation.
@@ -222,7 +227,7 @@ fn after_many_edits_of_two_thousand_faces_nothing_differs_and_nothing_has_grown_
     let database = Database::default();
     let mesh = sheet(45, 45);
     let mut model = Model::new(mesh);
-    let editable = quadtree().prepare_editable(&model, shallow(), &database);
+    let editable = in_place().prepare_editable(&model, shallow(), &database);
     let mut editable = editable.expect("sound options");
     let capacities: Vec<usize> = editable
         .prepared()
@@ -255,7 +260,7 @@ fn after_many_edits_of_two_thousand_faces_nothing_differs_and_nothing_has_grown_
         whole += u32::from(update.is_whole);
         touched += changes.faces().len();
         if number % every == every - 1 || number + 1 == edits {
-            let fresh = quadtree()
+            let fresh = in_place()
                 .prepare_with(&model, shallow(), &database)
                 .expect("sound options");
             // All of it from time to time, else what the edit influences and some of the rest.
@@ -352,7 +357,7 @@ fn methods_that_cannot_edit_in_place_say_so_and_prepare_all_anew() {
 fn changes_of_another_model_are_refused_and_one_left_out_prepares_all_anew() {
     let database = Database::default();
     let mut model = Model::new(builtin("hull").expect("it is built in"));
-    let mut editable = quadtree()
+    let mut editable = in_place()
         .prepare_editable(&model, shallow(), &database)
         .expect("sound options");
     let mut crease = |sharpness: f32| {
@@ -397,7 +402,7 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
     let database = Database::default();
     let mut model = Model::new(mesh);
     let options = PlanOptions::default();
-    let editable = quadtree().prepare_editable(&model, options, &database);
+    let editable = in_place().prepare_editable(&model, options, &database);
     let mut editable = editable.expect("sound options");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let mut random = Random(3);
@@ -410,7 +415,9 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
         edit.crease(a, b, 1.0 + 0.01 * random.below(300) as f32);
         let started = Instant::now();
         let changes = model.apply(&edit).expect("there is such an edge");
-        let update = editable.update(&model, &changes, &database).expect("it goes");
+        let update = editable
+            .update(&model, &changes, &database)
+            .expect("it goes");
         fastest = fastest.min(started.elapsed().as_secs_f64());
         assert!(!update.is_whole && changes.faces().len() < 100);
         faces += changes.faces().len();
@@ -433,7 +440,9 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
         );
     }
     assert!(each(words) < 20_000.0, "what is uploaded is little");
-    let fresh = quadtree().prepare_with(&model, options, &database);
+    let fresh = in_place().prepare_with(&model, options, &database);
     let fresh = fresh.expect("sound options");
-    hold(editable.prepared(), &fresh, &model, "creases", |ptex| ptex % 7 == 0);
+    hold(editable.prepared(), &fresh, &model, "creases", |ptex| {
+        ptex % 7 == 0
+    });
 }

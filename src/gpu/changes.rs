@@ -50,6 +50,8 @@ impl Edited {
     pub fn take(&mut self, prepared: &Prepared, update: &Update, decides: Decides) -> bool {
         let changes = update.passes.iter().map(|change| change.ranges().collect());
         let mut changes: Vec<Vec<(usize, Range<usize>)>> = changes.collect();
+        // Nothing is said of passes where nothing has changed.
+        changes.resize(prepared.passes.len(), Vec::new());
         let mut deciding = Vec::new();
         if decides == Decides::Device {
             for (number, pass) in prepared.passes.iter().enumerate() {

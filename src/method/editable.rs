@@ -158,8 +158,13 @@ impl Editable {
                 let before = self.prepared.version();
                 let patches = self.prepared.capacities();
                 let faces = changes.faces();
-                let passes = edits.edit(&mut self.prepared, model, faces, database);
-                let passes = passes.inspect_err(|_| self.edits = None)?;
+                let passes = match faces {
+                    // Positions alone, or tags that say what is so anyhow.
+                    [] => Vec::new(),
+                    faces => edits
+                        .edit(&mut self.prepared, model, faces, database)
+                        .inspect_err(|_| self.edits = None)?,
+                };
                 let is_whole = patches != self.prepared.capacities();
                 self.prepared.follow(model, is_whole);
                 self.revision = model.revision();

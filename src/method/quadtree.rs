@@ -9,6 +9,7 @@ mod corner;
 mod irregular;
 mod places;
 mod plain;
+mod planned;
 mod planner;
 mod store;
 mod subjects;
@@ -30,7 +31,8 @@ use crate::plan::database::Entry;
 use crate::plan::{Database, NodeKind, PlanOptions, SmoothQuads};
 use crate::tessellation::Domain;
 
-use planner::{Planned, Planner, Wanted};
+use planned::Planned;
+use planner::{Planner, Wanted};
 #[cfg(feature = "host")]
 pub(crate) use twin::node_kind;
 

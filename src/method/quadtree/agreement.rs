@@ -5,7 +5,7 @@
 //! Where they do not, or where one side has other cells than the other, the edge gets a plan of its own.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 
 use crate::abi;
@@ -69,6 +69,33 @@ pub fn agreed_edges(
     let agreeing = pairs.iter().zip(numbers);
     let agreeing = agreeing.filter(|&(_, number)| agree[number as usize]);
     agreeing.map(|(&[one, _], _)| side(one).number()).collect()
+}
+
+/// Takes down which edges of some faces are agreed upon, and adds the patches beyond those of which that has changed.
+pub fn agree(
+    topology: &Topology,
+    faces: &[u32],
+    now: &[u32],
+    agreed: &mut [bool],
+    patches: &Irregulars<'_>,
+    slots: &mut Vec<u32>,
+) {
+    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
+    let before: Vec<bool> = edges().map(|&edge| agreed[edge as usize]).collect();
+    edges().for_each(|&edge| agreed[edge as usize] = false);
+    now.iter().for_each(|&edge| agreed[edge as usize] = true);
+    let changed = edges()
+        .zip(before)
+        .filter(|&(&edge, before)| agreed[edge as usize] != before);
+    let beyond = changed.flat_map(|(&edge, _)| topology.edge_faces(edge));
+    let mut others: Vec<u32> = beyond.filter_map(|&face| patches.of_face(face)).collect();
+    if others.is_empty() {
+        return;
+    }
+    others.sort_unstable();
+    others.dedup();
+    let known: FxHashSet<u32> = slots.iter().copied().collect();
+    slots.extend(others.into_iter().filter(|slot| !known.contains(slot)));
 }
 
 /// Of each vertex of a ring, where it stands in another.

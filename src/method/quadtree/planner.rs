@@ -1,7 +1,7 @@
 //! Plans faces into passes: all of them at first, and some of them again when the mesh is edited.
 //!
 //! A patch keeps its slot, which is its number in its pass, as long as its face is drawn with the same shaders. What leaves a slot leaves it vacant, for whoever
-//! comes next. Plans and borders only ever grow ([`Store`], [`Borders`]); numbers of control vertices that nobody uses any more are taken again.
+//! comes next. Plans and borders only ever grow ([`Planned`]); numbers of control vertices that nobody uses any more are taken again.
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -12,15 +12,14 @@ use crate::mesh::Model;
 use crate::mesh::topology::Topology;
 use crate::method::outline::sides;
 use crate::method::patches::Part;
-use crate::method::quadtree::agreement::agreed_edges;
-use crate::method::quadtree::border::{Borders, Given};
+use crate::method::quadtree::agreement::{agree, agreed_edges};
+use crate::method::quadtree::border::Given;
 use crate::method::quadtree::irregular::{Irregulars, NONE, Record, order, push_ring};
 use crate::method::quadtree::places;
-use crate::method::quadtree::store::Store;
+use crate::method::quadtree::planned::Planned;
 use crate::method::quadtree::surroundings::{Found, Surroundings, found};
-use crate::method::quadtree::view::sums;
-use crate::method::{Pass, PassChange, Table};
-use crate::plan::database::{Entry, Kind};
+use crate::method::{Pass, PassChange};
+use crate::plan::database::Kind;
 use crate::plan::{Configuration, Database, PlanOptions, Ring, SmoothQuads};
 
 /// The passes, in their order: regular patches, patches with plans and short rings, patches with plans and long rings.
@@ -38,19 +37,6 @@ const AT_A_TIME: usize = 1 << 13;
 struct Place {
     pass: usize,
     slot: u32,
-}
-
-/// What a pass of patches with plans has beside its tables.
-#[derive(Clone, Default)]
-pub struct Planned {
-    /// Its plans.
-    pub store: Store,
-    /// Its borders.
-    pub borders: Borders,
-    /// By slot.
-    pub records: Vec<Record>,
-    /// The words of quadtrees that are plans of insides; only when all faces were planned at once.
-    pub inside_bytes: usize,
 }
 
 /// See the top of this file.
@@ -93,12 +79,50 @@ struct Run {
 /// What can be taken back, and what is let go at the end.
 #[derive(Default)]
 struct Log {
-    /// Patches and their texture coordinates before, in the order in which they were changed.
-    before: Vec<(Place, abi::Patch, [[f32; 2]; 4])>,
+    /// What was in slots before, in the order in which they were changed.
+    before: Vec<Before>,
     /// Numbers of control vertices: pass, start, count.
     freed: Vec<(usize, u32, u32)>,
     /// By pass, where numbers of control vertices were written below the end of the list.
     written: [Vec<std::ops::Range<u32>>; PASSES],
+}
+
+/// What was in a slot: its patch, texture coordinates and sides.
+struct Before {
+    place: Place,
+    patch: abi::Patch,
+    texture: [[f32; 2]; 4],
+    sides: [u32; 4],
+}
+
+impl Log {
+    /// Takes down what is in a slot.
+    fn remember(&mut self, pass: &Pass, place: Place) {
+        let slot = place.slot as usize;
+        self.before.push(Before {
+            place,
+            patch: pass.patches[slot],
+            texture: pass.texture[slot],
+            sides: pass.sides.get(slot).copied().unwrap_or_default(),
+        });
+    }
+
+    /// Puts everything back, in passes that had so many slots.
+    fn take_back(self, passes: &mut [Pass], slots: &[usize]) {
+        for before in self.before.into_iter().rev() {
+            let (pass, slot) = (&mut passes[before.place.pass], before.place.slot as usize);
+            pass.patches[slot] = before.patch;
+            pass.texture[slot] = before.texture;
+            if let Some(sides) = pass.sides.get_mut(slot) {
+                *sides = before.sides;
+            }
+        }
+        for (pass, &slots) in passes.iter_mut().zip(slots) {
+            pass.patches.truncate(slots);
+            pass.texture.truncate(slots);
+            pass.sides.truncate(slots);
+        }
+    }
 }
 
 /// A patch that nothing is drawn of.
@@ -140,7 +164,7 @@ impl Planner {
     /// Plans faces. The passes are left as they were where that fails, and the planner is of no use then.
     ///
     /// # Errors
-    /// As [`Store::plans`] and [`Borders::find`].
+    /// As [`Store::plans`](super::store::Store::plans) and [`Borders::find`](super::border::Borders::find).
     pub fn plan(
         &mut self,
         passes: &mut [Pass],
@@ -150,30 +174,25 @@ impl Planner {
     ) -> Result<Vec<PassChange>> {
         let mut log = Log::default();
         let ends: Vec<usize> = passes.iter().map(|pass| pass.controls.len()).collect();
-        match self.try_plan(passes, model, wanted, database, &mut log) {
-            Ok(()) => {
-                for (pass, start, count) in log.freed {
-                    self.free[pass].entry(count).or_default().push(start);
-                }
-                let mut changes = self.finish(passes);
-                for (number, change) in changes.iter_mut().enumerate() {
-                    let slots = log.before.iter().filter(|(at, ..)| at.pass == number);
-                    change.patches(slots.map(|(at, ..)| at.slot).collect());
-                    change.controls(
-                        &log.written[number],
-                        ends[number]..passes[number].controls.len(),
-                    );
-                }
-                Ok(changes)
-            }
-            Err(error) => {
-                for (Place { pass, slot }, patch, texture) in log.before.into_iter().rev() {
-                    passes[pass].patches[slot as usize] = patch;
-                    passes[pass].texture[slot as usize] = texture;
-                }
-                Err(error)
-            }
+        let slots: Vec<usize> = passes.iter().map(|pass| pass.patches.len()).collect();
+        if let Err(error) = self.try_plan(passes, model, wanted, database, &mut log) {
+            log.take_back(passes, &slots);
+            return Err(error);
         }
+        for (pass, start, count) in log.freed {
+            self.free[pass].entry(count).or_default().push(start);
+        }
+        let mut changes = self.finish(passes);
+        for (number, change) in changes.iter_mut().enumerate() {
+            let own = log
+                .before
+                .iter()
+                .filter(|before| before.place.pass == number);
+            change.patches(own.map(|before| before.place.slot).collect());
+            let appended = ends[number]..passes[number].controls.len();
+            change.controls(&log.written[number], appended);
+        }
+        Ok(changes)
     }
 
     fn try_plan(
@@ -335,11 +354,9 @@ impl Planner {
                 pass: SHORT + number,
                 slot,
             };
-            let patch = &mut pass.patches[slot as usize];
-            if patch.plan != border {
-                log.before
-                    .push((place, *patch, pass.texture[slot as usize]));
-                patch.plan = border;
+            if pass.patches[slot as usize].plan != border {
+                log.remember(pass, place);
+                pass.patches[slot as usize].plan = border;
             }
         }
         Ok(())
@@ -363,8 +380,7 @@ impl Planner {
         let place = Place { pass: number, slot };
         self.places[ptex as usize] = Some(place);
         if self.spares {
-            let texture = passes[number].texture[slot as usize];
-            log.before.push((place, VACANT, texture));
+            log.remember(&passes[number], place);
         }
         slot
     }
@@ -396,8 +412,7 @@ impl Planner {
             }
         };
         log.freed.push((place.pass, patch.controls, count));
-        let texture = passes[place.pass].texture[slot];
-        log.before.push((place, patch, texture));
+        log.remember(&passes[place.pass], place);
     }
 
     /// Where numbers of control vertices are kept: where there were as many that nobody uses, or at the end.
@@ -442,33 +457,6 @@ impl Planner {
     }
 }
 
-/// Takes down which edges of some faces are agreed upon, and adds the patches beyond those of which that has changed.
-fn agree(
-    topology: &Topology,
-    faces: &[u32],
-    now: &[u32],
-    agreed: &mut [bool],
-    patches: &Irregulars<'_>,
-    slots: &mut Vec<u32>,
-) {
-    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
-    let before: Vec<bool> = edges().map(|&edge| agreed[edge as usize]).collect();
-    edges().for_each(|&edge| agreed[edge as usize] = false);
-    now.iter().for_each(|&edge| agreed[edge as usize] = true);
-    let changed = edges()
-        .zip(before)
-        .filter(|&(&edge, before)| agreed[edge as usize] != before);
-    let beyond = changed.flat_map(|(&edge, _)| topology.edge_faces(edge));
-    let mut others: Vec<u32> = beyond.filter_map(|&face| patches.of_face(face)).collect();
-    if others.is_empty() {
-        return;
-    }
-    others.sort_unstable();
-    others.dedup();
-    let known: rustc_hash::FxHashSet<u32> = slots.iter().copied().collect();
-    slots.extend(others.into_iter().filter(|slot| !known.contains(slot)));
-}
-
 impl Run {
     /// What a patch is; its plan is the number of its configuration in the run.
     fn record(&mut self, topology: &Topology, part: Part, surroundings: Surroundings) -> Record {
@@ -498,60 +486,6 @@ impl Run {
                 mirrored: ring.mirrored,
                 is_smooth: false,
             },
-        }
-    }
-}
-
-impl Planned {
-    /// How many plans there are of insides, edges, and vertices.
-    pub fn counts(&self) -> [usize; 3] {
-        let mut counts = [0; 3];
-        for entry in self.store.entries() {
-            counts[match entry {
-                Entry::Inside(_) => 0,
-                Entry::Edge(_) => 1,
-                Entry::Vertex(_) => 2,
-            }] += 1;
-        }
-        counts
-    }
-
-    /// Brings a pass' tables up to its plans and borders.
-    fn finish(&mut self, pass: &mut Pass, change: &mut PassChange) {
-        let Borders {
-            records,
-            uses,
-            ends,
-            ..
-        } = &self.borders;
-        let known = pass.scratch_points.len();
-        for border in &records[known..] {
-            let (points, products) = sums(border, uses, ends);
-            pass.scratch_points.push(points);
-            pass.scratch_products.push(products);
-        }
-        let packed = &mut self.store.packed;
-        let products = packed.headers.iter().map(|header| {
-            let stencils = header.counts.iter().copied().max().unwrap_or(0);
-            u64::from(header.ring_size) * u64::from(stencils)
-        });
-        packed.rows.hold(products.max().unwrap_or(0));
-        let rows = packed.rows.view();
-        let tables = [
-            Table::grown(&packed.nodes),
-            Table::grown(bytemuck::cast_slice::<u32, [u32; 2]>(&packed.points)),
-            Table::grown(rows.rows),
-            Table::grown(rows.sets),
-            Table::grown(rows.patterns),
-            Table::grown(uses),
-            Table::grown(ends),
-            Table::grown(records),
-        ];
-        for (number, (words, stride)) in tables.into_iter().enumerate() {
-            if pass.tables.len() == number {
-                pass.tables.push(Table::default());
-            }
-            change.own(number, pass.tables[number].grow(words, stride));
         }
     }
 }

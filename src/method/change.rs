@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::abi;
 #[cfg(feature = "vulkan")]
-use crate::method::{Prepared, Update};
+use crate::method::Prepared;
 
 /// Which words of a pass' tables are other ones: its patches, the numbers of control vertices, texture coordinates, and the method's own tables, in this order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -12,6 +12,40 @@ pub struct PassChange {
     tables: Vec<Vec<Range<usize>>>,
     /// Slots of patches, ascending.
     slots: Vec<u32>,
+}
+
+/// What an edit did to what was prepared.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Update {
+    /// Whether everything was prepared anew, or a pass has more patches than it had room for: what was made for it on a device is of no use any more.
+    pub is_whole: bool,
+    /// By pass, which words of its tables are other ones; nothing where all are.
+    pub passes: Vec<PassChange>,
+    /// The version that was edited.
+    #[cfg_attr(not(feature = "vulkan"), expect(dead_code))]
+    before: u64,
+}
+
+impl Update {
+    /// An update of a version.
+    pub(super) fn new(is_whole: bool, passes: Vec<PassChange>, before: u64) -> Update {
+        Update {
+            is_whole,
+            passes,
+            before,
+        }
+    }
+
+    /// The words of tables that are other ones.
+    pub fn words(&self) -> usize {
+        self.passes.iter().map(PassChange::words).sum()
+    }
+
+    /// The version that was edited.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn before(&self) -> u64 {
+        self.before
+    }
 }
 
 /// Words of a patch, and of its texture coordinates.

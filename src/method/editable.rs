@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Misuse, Result};
 use crate::mesh::{ChangeSet, Model};
-use crate::method::{Method, MethodOptions, PassChange, Prepared};
+use crate::method::{Method, MethodOptions, PassChange, Prepared, Update};
 use crate::plan::Database;
 
 /// Plans some faces of a model again.
@@ -39,31 +39,6 @@ pub struct Editable {
     revision: u64,
     /// The words of all tables when everything was prepared last.
     words: usize,
-}
-
-/// What an edit did to what was prepared.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Update {
-    /// Whether everything was prepared anew, or a pass has more patches than it had room for: what was made for it on a device is of no use any more.
-    pub is_whole: bool,
-    /// By pass, which words of its tables are other ones; nothing where all are.
-    pub passes: Vec<PassChange>,
-    /// The version that was edited.
-    #[cfg_attr(not(feature = "vulkan"), expect(dead_code))]
-    before: u64,
-}
-
-impl Update {
-    /// The words of tables that are other ones.
-    pub fn words(&self) -> usize {
-        self.passes.iter().map(PassChange::words).sum()
-    }
-
-    /// The version that was edited.
-    #[cfg(feature = "vulkan")]
-    pub(crate) fn before(&self) -> u64 {
-        self.before
-    }
 }
 
 impl std::fmt::Debug for Editable {
@@ -168,11 +143,8 @@ impl Editable {
                 let is_whole = patches != self.prepared.capacities();
                 self.prepared.follow(model, is_whole);
                 self.revision = model.revision();
-                return Ok(Update {
-                    is_whole,
-                    passes: if is_whole { Vec::new() } else { passes },
-                    before,
-                });
+                let passes = if is_whole { Vec::new() } else { passes };
+                return Ok(Update::new(is_whole, passes, before));
             }
             None => {}
         }
@@ -188,10 +160,7 @@ impl Editable {
         self.words = prepared.table_words();
         (self.prepared, self.edits) = (prepared, edits);
         self.revision = model.revision();
-        Ok(Update {
-            is_whole: true,
-            ..Update::default()
-        })
+        Ok(Update::new(true, Vec::new(), 0))
     }
 
     /// Whether there is more than twice as much as when everything was prepared last: a good time to [`renew`](Self::renew) it, before an update has to.

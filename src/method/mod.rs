@@ -83,11 +83,11 @@ use origin::Origin;
 
 pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use cell::Cell;
-pub use change::PassChange;
+pub use change::{PassChange, Update};
 #[cfg(feature = "vulkan")]
 pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
-pub use editable::{Editable, Update};
+pub use editable::Editable;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use pass::{Pass, Twin, is_on_hexagon};

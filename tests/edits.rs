@@ -4,12 +4,14 @@ mod common;
 
 use std::time::Instant;
 
+use common::meshes::{cases, wild};
 use glam::Vec2;
 use hullform::mesh::{BoundaryInterpolation, ControlMesh, CreaseMethod, Edit, Model, builtin};
 use hullform::method::{
     Controls, Editable, METHODS, Method, Pass, Prepared, SurfacePoint, from_ptex,
 };
 use hullform::plan::{Database, PlanOptions};
+use proptest::prelude::*;
 
 /// Where patches are evaluated: corners, edges and inside, as deep as [`shallow`] plans go.
 const PLACES: [f32; 6] = [0.0, 1.0 / 16.0, 0.3, 0.5, 0.8125, 1.0];
@@ -214,6 +216,29 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
         whole < 4,
         "most is planned again where it has changed alone"
     );
+}
+
+proptest! {
+    #![proptest_config(cases(24))]
+
+    /// Meshes of any kind: open, non-manifold, with n-gons, poles and lenses, under any options.
+    #[test]
+    fn edits_of_random_meshes_draw_what_fresh_preparations_draw(recipe in wild(), seed in any::<u64>()) {
+        let database = Database::default();
+        let mut random = Random(seed);
+        let mut model = Model::new(recipe.mesh());
+        let editable = in_place().prepare_editable(&model, shallow(), &database);
+        let mut editable = editable.expect("sound options");
+        for number in 0..6 {
+            let mut edit = model.mesh().edit();
+            (0..1 + number % 3).for_each(|_| step(&mut edit, &model, &mut random));
+            let changes = model.apply(&edit).expect("all of it is there");
+            editable.update(&model, &changes, &database).expect("it goes");
+            let fresh = in_place().prepare_with(&model, shallow(), &database);
+            let fresh = fresh.expect("sound options");
+            hold(editable.prepared(), &fresh, &model, &format!("{number} {edit:?}"), |_| true);
+        }
+    }
 }
 
 /// So many edits in a run by hand: `HULLFORM_EDITS=10000`, where every one is held against a fresh preparation.

@@ -235,6 +235,9 @@ mod tests {
     use super::*;
     use crate::mesh::{BoundaryInterpolation, CreaseMethod, Scheme, SchemeOptions, builtin};
 
+    /// Adds a step that does not go.
+    type Wrong = fn(&mut Edit) -> &mut Edit;
+
     /// Numbers without a pattern (splitmix64).
     fn random(state: &mut u64) -> u64 {
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -322,7 +325,7 @@ mod tests {
         let mesh = builtin("cube").expect("it is built in");
         let mut model = Model::new(mesh.clone());
         let revision = model.revision;
-        let edits: [(&str, fn(&mut Edit) -> &mut Edit); 10] = [
+        let edits: [(&str, Wrong); 10] = [
             ("edge 0-6: ", |edit| edit.crease(0, 6, 1.0)),
             ("edge 3-3: ", |edit| edit.crease(3, 3, 1.0)),
             ("edge 0-99: ", |edit| edit.crease(0, 99, 1.0)),

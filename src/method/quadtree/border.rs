@@ -43,7 +43,7 @@ pub struct Given<'a> {
 }
 
 /// Borders, each once. They only ever grow, and their numbers stay.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub struct Borders {
     /// The borders.
     pub records: Vec<abi::Border>,

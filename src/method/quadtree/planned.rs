@@ -8,7 +8,7 @@ use crate::method::{Pass, PassChange, Table};
 use crate::plan::database::Entry;
 
 /// What a pass of patches with plans has beside its tables.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub struct Planned {
     /// Its plans.
     pub store: Store,

@@ -40,7 +40,6 @@ struct Place {
 }
 
 /// See the top of this file.
-#[derive(Clone)]
 pub struct Planner {
     options: PlanOptions,
     planned: [Planned; 2],
@@ -304,7 +303,7 @@ impl Planner {
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let topology = model.topology();
+        let (topology, pass_number) = (model.topology(), SHORT + number);
         let Run {
             mut slots, numbers, ..
         } = run;
@@ -324,13 +323,13 @@ impl Planner {
             let record = &mut records[slot as usize];
             record.plan = numbers[record.plan as usize];
         }
-        let pass = &mut passes[SHORT + number];
+        let pass = &mut passes[pass_number];
         let patches = Irregulars {
             records,
             of_faces: &self.of_faces,
             pass,
         };
-        if SHORT + number == SHORT {
+        if pass_number == SHORT {
             let agreed = agreed_edges(topology, smooth, &patches, &slots, store);
             agree(
                 topology,
@@ -351,13 +350,13 @@ impl Planner {
         pass.controls.extend_from_slice(&found.places);
         for (slot, border) in slots.into_iter().zip(found.numbers) {
             let place = Place {
-                pass: SHORT + number,
+                pass: pass_number,
                 slot,
             };
-            if pass.patches[slot as usize].plan != border {
+            if self.spares && pass.patches[slot as usize].plan != border {
                 log.remember(pass, place);
-                pass.patches[slot as usize].plan = border;
             }
+            pass.patches[slot as usize].plan = border;
         }
         Ok(())
     }

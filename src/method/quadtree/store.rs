@@ -9,7 +9,7 @@ use crate::plan::database::{Entry, Kind};
 use crate::plan::{Configuration, Database, PackedPlans, Plan, PlanOptions, Strip};
 
 /// Packed plans, by their numbers.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Store {
     /// The plans as shaders read them.
     pub packed: PackedPlans,

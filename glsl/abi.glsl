@@ -152,6 +152,8 @@ const uint PATCH_TURN_SHIFT = 5u;
 const uint PATCH_CREASED = 65536u;
 // Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
 const uint PATCH_MIRRORED = 4194304u;
+// Patch flag: the slot is vacant. Nothing is drawn of it, until an edit gives it a patch.
+const uint PATCH_VACANT = 2147483648u;
 // Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
 const uint PATCH_RING_SHIFT = 23u;
 // Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.

@@ -92,7 +92,7 @@ void main() {
     uint culled = culled_by(record, sides, seen, eyes);
     vec4 edges = vec4(0.0);
     float inside = 0.0;
-    if (culled == 0u) {
+    if (culled == 0u && (record.flags & PATCH_VACANT) == 0u) {
         bool fractional_even = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u;
         bool is_half = (record.flags & PATCH_HALF) != 0u;
         for (uint i = 0u; i < 4u; ++i) {

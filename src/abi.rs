@@ -162,6 +162,8 @@ constants! {
 
     /// Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
     PATCH_MIRRORED = 0x40_0000;
+    /// Patch flag: the slot is vacant. Nothing is drawn of it, until an edit gives it a patch.
+    PATCH_VACANT = 0x8000_0000;
     /// Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
     PATCH_RING_SHIFT = 23;
 

@@ -106,6 +106,9 @@
 //! vertex, by distance, picture or curvature, or of your own. What the host decides about single patches is brought to the device by
 //! `gpu::TessellatedSurface::write_draws`, when nothing submitted uses the slot.
 //!
+//! **Edits.** A model that is edited is prepared by [`Method::prepare_editable`](method::Method::prepare_editable), and its tables are made by `gpu::Tables::editable`: after
+//! `gpu::Tables::edit` the next `cmd_upload` records the words that an edit has changed, and no frame in flight is waited for. See [Edits](manual::edits).
+//!
 //! **Decisions of the device.** With `gpu::SurfaceOptions::decides` a compute pass (`gpu::FrameSlot::cmd_decide`) decides in each frame and for each view what levels
 //! edges have, by their distance or by their pixels, and leaves out patches beyond the picture before their control points are computed: a
 //! [`frame::Decision`]. The host has nothing to do a patch, frames in flight do not wait for one another, and a frozen view can decide for another.

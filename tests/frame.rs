@@ -1,8 +1,11 @@
 //! Draw lists, without a device: whatever the mesh, cut and options, a list draws each patch once and stays within its bounds.
 
-use hullform::frame::{Backend, Cut, Draw, DrawList, Slots, SurfaceOptions};
+use hullform::frame::{
+    Backend, Cut, Draw, DrawList, Residence, Slots, SurfaceOptions, TessellatedPoint,
+};
 use hullform::mesh::{Model, builtin};
-use hullform::method::{DepthTags, METHODS, MethodOptions, Prepared};
+use hullform::method::{DepthTags, METHODS, MethodOptions, Prepared, SurfacePoint};
+use hullform::plan::Database;
 use hullform::tessellation::Spacing;
 
 /// The limit of drivers that lose patches beyond 16 bits, tighter ones to single patches, and none.
@@ -100,6 +103,73 @@ fn a_list_draws_each_patch_once_within_its_bounds() {
 }
 
 /// Slots of the host follow one another in each batch, and leave room for what the cut needs at most.
+/// Of what was edited some slots are vacant: nothing is drawn of these, whoever makes the triangles and whoever decides, and all else as of a fresh preparation.
+#[test]
+fn vacant_slots_are_drawn_nowhere() {
+    let database = Database::default();
+    let mut model = Model::new(builtin("hull").expect("it is built in"));
+    let method = METHODS.iter().find(|method| method.edits_in_place());
+    let method = method.expect("one edits in place");
+    let editable = method.prepare_editable(&model, MethodOptions::default(), &database);
+    let mut editable = editable.expect("the model is sound");
+    let mut edit = model.mesh().edit();
+    (0..40).for_each(|face| {
+        edit.hole(7 * face, true);
+    });
+    let [a, b] = model.topology().edges()[500].vertices;
+    edit.crease(a, b, 2.0);
+    let changes = model.apply(&edit).expect("all of it is there");
+    let update = editable.update(&model, &changes, &database);
+    assert!(!update.expect("the model is sound").is_whole);
+    let fresh = method.prepare_with(&model, MethodOptions::default(), &database);
+    let (edited, fresh) = (editable.prepared(), fresh.expect("the model is sound"));
+    let controls = fresh.controls(model.positions());
+    let cut = Cut {
+        level: 4.0,
+        spacing: Spacing::Equal,
+    };
+    for backend in Backend::ALL {
+        for (slots, tagged) in [
+            (Slots::Counter, false),
+            (Slots::Host, false),
+            (Slots::Counter, true),
+        ] {
+            let options = SurfaceOptions {
+                backend,
+                slots,
+                residence: Residence::Cache,
+                greatest_level: 4.0,
+                ..SurfaceOptions::default()
+            };
+            let drawn = |prepared: &Prepared| {
+                let tags = tagged.then(|| tags(prepared));
+                let list = DrawList::new(prepared, &options, None, cut, tags.as_ref());
+                let list = list.expect("options and cut go together");
+                let mut instances = 0;
+                for batch in list.batches() {
+                    instances += batch.draws().iter().fold(0, |sum, draw| match draw {
+                        Draw::Pattern { instances, .. } => sum + instances,
+                        Draw::Patches { .. } => sum,
+                    });
+                }
+                let tessellated = list.tessellate(prepared, &controls).expect("its own");
+                let bits = |point: &TessellatedPoint| {
+                    let SurfacePoint { position, normal } = point.surface;
+                    (
+                        position.to_array().map(f32::to_bits),
+                        normal.to_array().map(f32::to_bits),
+                    )
+                };
+                let mut points: Vec<_> = tessellated.points.iter().map(bits).collect();
+                points.sort_unstable();
+                (points, tessellated.triangles.len(), instances)
+            };
+            let [own, right] = [edited, &fresh].map(drawn);
+            assert!(own == right, "{backend:?} {slots:?} {tagged}");
+        }
+    }
+}
+
 #[test]
 fn slots_of_the_host_do_not_overlap() {
     let prepared = &prepared("ngons")[0];

@@ -21,6 +21,7 @@ Levels patch_levels(uint number, uint view, Patch record) {
         PatchDraw draw = draws[first + min(number, frame.end_patch - 1u)];
         return Levels(draw.edges, draw.inside);
     }
+    if ((record.flags & PATCH_VACANT) != 0u) return Levels(vec4(0.0), 0.0);
     float level = clamp(frame.level, 1.0, 64.0);
     precise float halved = half_level(level, (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u);
     if ((record.flags & PATCH_HALF) != 0u) return Levels(vec4(halved), halved);

@@ -1,5 +1,7 @@
 //! Batches: runs of patches that fit into the scratch ring together, and into whatever else bounds a draw.
 
+use std::ops::Range;
+
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, Cut};
 use crate::method::{Pass, Prepared};
@@ -25,7 +27,7 @@ pub(super) struct Run {
 
 impl Run {
     /// Its patches.
-    pub fn patches(&self) -> std::ops::Range<u32> {
+    pub fn patches(&self) -> Range<u32> {
         self.first..self.first + self.per_instance * self.instances
     }
 }
@@ -53,11 +55,12 @@ pub(super) fn batches(prepared: &Prepared, cut: Cut, bounds: Bounds) -> Result<V
     for (number, pass) in prepared.passes.iter().enumerate() {
         let most = bounds.patches_per_instance(pass, cut);
         let mut first = 0;
-        while (first as usize) < pass.patches.len() {
+        let extent = pass.extent();
+        while (first as usize) < extent {
             let mut run = Run {
                 pass: number,
                 ring_batch,
-                ..bounds.longest(pass, cut, first)?
+                ..bounds.longest(pass, cut, first as usize..extent)?
             };
             bounds.trim(&mut run, pass, cut, most);
             ring_batch += u32::from(bounds.uses_ring(pass));
@@ -85,18 +88,18 @@ impl Bounds {
         patches_per_instance(most, segments)
     }
 
-    /// As many patches from `first` on as fit, one at least; as one instance.
-    fn longest(&self, pass: &Pass, cut: Cut, first: u32) -> Result<Run> {
+    /// As many of some patches, from the first on, as fit, one at least; as one instance.
+    fn longest(&self, pass: &Pass, cut: Cut, patches: Range<usize>) -> Result<Run> {
         let mut run = Run {
             pass: 0,
-            first,
+            first: patches.start as u32,
             per_instance: 0,
             instances: 1,
             points: 0,
             vertices: 0,
             ring_batch: 0,
         };
-        for patch in first as usize..pass.patches.len() {
+        for patch in patches {
             let [points, vertices] = self.needs(pass, cut, patch);
             let room = self.ring.unwrap_or(0);
             if points > room {

@@ -14,8 +14,11 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// The tess levels of a patch; None where there is no such patch.
+    /// The tess levels of a patch; None where there is no such patch, or its slot is vacant.
     pub fn levels(&self, pass: &Pass, patch: usize) -> Option<Levels> {
+        if pass.is_vacant(patch) {
+            return None;
+        }
         let patch = pass.patches.get(patch)?;
         let max_level = pass.max_level;
         Some(levels(

@@ -100,15 +100,19 @@ impl Decision {
         cut: Cut,
         seen: &Seen,
     ) -> Option<Levels> {
-        let decided = self.decide(outline, pass, patch, vertices, cut, seen)?;
-        Some(decided.unwrap_or(Levels {
+        let none = Levels {
             domain: pass.domain,
             edges: [0.0; 4],
             inside: 0.0,
-        }))
+        };
+        if patch < pass.patches.len() && pass.is_vacant(patch) {
+            return Some(none);
+        }
+        let decided = self.decide(outline, pass, patch, vertices, cut, seen)?;
+        Some(decided.unwrap_or(none))
     }
 
-    /// The same, or why the patch is not drawn.
+    /// The same, or why the patch is not drawn; None also where its slot is vacant.
     pub fn decide(
         &self,
         outline: &Outline,
@@ -118,7 +122,7 @@ impl Decision {
         cut: Cut,
         seen: &Seen,
     ) -> Option<Result<Levels, Culled>> {
-        let record = pass.patches.get(patch)?;
+        let record = pass.patches.get(patch).filter(|_| !pass.is_vacant(patch))?;
         let sides = pass.sides.get(patch)?;
         let place = |&vertex: &u32| vertices[vertex as usize];
         let points: Vec<Vec3> = pass.hull(patch).iter().map(place).collect();

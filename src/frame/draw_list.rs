@@ -21,7 +21,8 @@ use crate::tessellation::{
 #[derive(Clone, Debug)]
 pub struct DrawList {
     number: u64,
-    prepared: u64,
+    /// The number and version of what was prepared.
+    prepared: [u64; 2],
     options: SurfaceOptions,
     instance_vertices: Option<u32>,
     cut: Cut,
@@ -63,7 +64,7 @@ impl DrawList {
         let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
         let mut list = DrawList {
             number: NUMBER.fetch_add(1, Ordering::Relaxed),
-            prepared: prepared.number(),
+            prepared: [prepared.number(), prepared.version()],
             options: *options,
             instance_vertices,
             cut,
@@ -96,6 +97,12 @@ impl DrawList {
         Ok(u64::from(most) * u64::from(options.rounds))
     }
 
+    /// The counters that its own batches need, in all rounds.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn counters(&self) -> u64 {
+        u64::from(self.ring_batches) * u64::from(self.options.rounds)
+    }
+
     /// Fills in draws, and what the host decides about each patch where it does.
     fn decide(&mut self, prepared: &Prepared) {
         let records = self.options.has_host_slots() || self.tagged.is_some();
@@ -113,7 +120,7 @@ impl DrawList {
                 self.records[run.pass].extend(decided);
             }
             if patterns {
-                let levels = |patch| self.levels_of(prepared, run.pass, patch);
+                let levels = |patch| self.levels(prepared, run.pass, patch);
                 let (draws, instances) = all.arrange(run.patches(), levels);
                 self.instances[run.pass].extend(instances);
                 self.draws.push(draws);
@@ -134,13 +141,16 @@ impl DrawList {
         let mut next = 0;
         run.patches()
             .map(|patch| {
-                let levels = self.levels_of(prepared, run.pass, patch);
+                let levels = self.levels(prepared, run.pass, patch);
                 let slot = next;
                 next += self.cut.points(pass, patch as usize);
+                // Nothing is drawn of a vacant slot.
+                let drawn = levels.map(|levels| (levels.edges, levels.inside));
+                let (edges, inside) = drawn.unwrap_or_default();
                 abi::PatchDraw {
                     slot,
-                    edges: levels.edges,
-                    inside: levels.inside,
+                    edges,
+                    inside,
                 }
             })
             .collect()
@@ -233,21 +243,17 @@ impl DrawList {
 
     /// Whether it is of what was prepared.
     pub(super) fn is_of(&self, prepared: &Prepared) -> bool {
-        self.prepared == prepared.number()
+        self.prepared == [prepared.number(), prepared.version()]
     }
 
-    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch.
+    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch, or its slot is vacant.
     pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Option<Levels> {
+        let patches = prepared.passes.get(pass)?;
         match &self.tagged {
+            Some(_) if patches.is_vacant(patch as usize) => None,
             Some(levels) => levels.get(pass)?.get(patch as usize).copied(),
-            None => self.cut.levels(prepared.passes.get(pass)?, patch as usize),
+            None => self.cut.levels(patches, patch as usize),
         }
-    }
-
-    /// The same of a patch that there is.
-    fn levels_of(&self, prepared: &Prepared, pass: usize, patch: u32) -> Levels {
-        let levels = self.levels(prepared, pass, patch);
-        levels.expect("runs are of the patches that were prepared")
     }
 
     /// The vertices of a patch; none where there is no such patch.

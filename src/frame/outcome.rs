@@ -43,7 +43,8 @@ impl Outcome {
     /// Of the decisions about a pass in one view, in the order of patches, for a list of this cut.
     pub fn of(pass: &Pass, records: &[abi::PatchDraw], cut: Cut) -> Outcome {
         let mut outcome = Outcome::default();
-        for (patch, record) in records.iter().enumerate() {
+        let slots = records.iter().enumerate();
+        for (patch, record) in slots.filter(|&(patch, _)| !pass.is_vacant(patch)) {
             let levels = Levels {
                 domain: pass.domain,
                 edges: record.edges,

@@ -18,22 +18,24 @@ pub(super) struct Patterns {
 
 impl Patterns {
     /// Sorts patches by the patterns that their levels ask for: an instance a patch, those with the same pattern in one draw. Returns the draws,
-    /// and the patches in the order of instances; the first instance has the number of the first patch.
+    /// and the patches in the order of instances; the first instance has the number of the first patch. Patches without levels come last, and are not drawn.
     pub fn arrange(
         &mut self,
         patches: std::ops::Range<u32>,
-        levels: impl Fn(u32) -> Levels,
+        levels: impl Fn(u32) -> Option<Levels>,
     ) -> (Vec<Draw>, Vec<u32>) {
         let mut first = patches.start;
-        let mut patches: Vec<(Key, Levels, u32)> = patches
-            .map(|patch| {
-                let levels = levels(patch);
-                (key(&levels), levels, patch)
-            })
-            .collect();
-        patches.sort_by_key(|&((_, edges), _, patch)| (edges, patch));
+        let mut vacant = Vec::new();
+        let mut drawn: Vec<(Key, Levels, u32)> = Vec::with_capacity(patches.len());
+        for patch in patches {
+            match levels(patch) {
+                Some(levels) => drawn.push((key(&levels), levels, patch)),
+                None => vacant.push(patch),
+            }
+        }
+        drawn.sort_by_key(|&((_, edges), _, patch)| (edges, patch));
         let mut draws = Vec::new();
-        for run in patches.chunk_by(|a, b| a.0 == b.0) {
+        for run in drawn.chunk_by(|a, b| a.0 == b.0) {
             let instances = run.len() as u32;
             draws.push(Draw::Pattern {
                 pattern: self.number(&run[0].1),
@@ -43,8 +45,8 @@ impl Patterns {
             });
             first += instances;
         }
-        let instances = patches.into_iter().map(|(_, _, patch)| patch).collect();
-        (draws, instances)
+        let instances = drawn.into_iter().map(|(_, _, patch)| patch);
+        (draws, instances.chain(vacant).collect())
     }
 
     fn number(&mut self, levels: &Levels) -> u32 {
@@ -83,7 +85,7 @@ mod tests {
             [4.0, 2.0, 4.0],
         ];
         let mut patterns = Patterns::default();
-        let of = |patch: u32| triangle(edges[patch as usize % 4]);
+        let of = |patch: u32| (patch < 8).then(|| triangle(edges[patch as usize % 4]));
         let (draws, instances) = patterns.arrange(0..4, of);
         assert_eq!(instances, [1, 3, 0, 2]);
         let pattern = |pattern, first_instance| Draw::Pattern {
@@ -93,7 +95,8 @@ mod tests {
             segments: 4,
         };
         assert_eq!(draws, [pattern(0, 0), pattern(1, 2)]);
-        let (draws, _) = patterns.arrange(4..8, of);
+        let (draws, instances) = patterns.arrange(4..9, of);
+        assert_eq!(instances, [5, 7, 4, 6, 8], "nothing is drawn of the last");
         assert_eq!(draws, [pattern(0, 4), pattern(1, 6)]);
         assert_eq!(patterns.all.len(), 2);
     }

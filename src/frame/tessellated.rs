@@ -58,8 +58,9 @@ impl DrawList {
         let (mut points, mut triangles) = (0u64, 0);
         for (number, pass) in (0u32..).zip(&prepared.passes) {
             for patch in 0..pass.patches.len() as u32 {
-                let levels = self.levels(prepared, number as usize, patch);
-                let levels = levels.expect("the pass has this patch");
+                let Some(levels) = self.levels(prepared, number as usize, patch) else {
+                    continue;
+                };
                 let mould = moulds.entry(key(&levels));
                 let mould = Arc::clone(mould.or_insert_with(|| Arc::new(self.mould(&levels))));
                 points += mould.uv.len() as u64;

@@ -32,6 +32,9 @@ pub struct Counters {
     pub points: u32,
 }
 
+/// Batches that edits may make more than there are at first.
+const SPARE_BATCHES: u32 = 32;
+
 /// The numbers of a slot's buffers.
 #[derive(Debug, Default)]
 struct Numbers {
@@ -57,6 +60,8 @@ pub struct FrameSlot {
     options: SurfaceOptions,
     /// Tessellated vertices an instance, where the driver bounds them.
     instance_vertices: Option<u32>,
+    /// Batches that use the ring, in all rounds, that there are counters for.
+    counters: u64,
     bound: Bound,
     numbers: Numbers,
     patterns: Patterns,
@@ -90,11 +95,14 @@ impl FrameSlot {
         Enabled::require(geometry, layout.enabled().geometry_shader, "geometryShader")?;
         let prepared = tables.prepared();
         let instance_vertices = instance_vertices(workarounds);
-        let counters = DrawList::ring_counters(prepared, &options, instance_vertices)?;
+        // Edits may make some more.
+        let spare = u64::from(SPARE_BATCHES * options.rounds);
+        let counters = spare + DrawList::ring_counters(prepared, &options, instance_vertices)?;
         let mut slot = FrameSlot {
             prepared: prepared.number(),
             options,
             instance_vertices,
+            counters,
             bound: Bound::default(),
             numbers: Numbers::default(),
             patterns: Patterns::default(),
@@ -270,10 +278,14 @@ impl FrameSlot {
     /// [`Misuse::OtherSurface`] for the list of another surface, and for other tables.
     pub(super) fn check_owner(&self, tables: &Tables, list: &DrawList) -> Result<()> {
         self.check(tables)?;
-        if list.is_for(tables.prepared(), &self.options, self.instance_vertices) {
-            return Ok(());
+        if !list.is_for(tables.prepared(), &self.options, self.instance_vertices) {
+            return Err(Error::Misuse(Misuse::OtherSurface));
         }
-        Err(Error::Misuse(Misuse::OtherSurface))
+        let (needed, given) = (list.counters(), self.counters);
+        if needed > given {
+            return Err(Error::Misuse(Misuse::ManyBatches { needed, given }));
+        }
+        Ok(())
     }
 
     /// # Errors

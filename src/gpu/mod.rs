@@ -9,6 +9,7 @@ pub mod buffer;
 mod cache;
 mod cached;
 mod call;
+mod changes;
 mod decide;
 mod draw;
 pub mod driver;
@@ -52,7 +53,7 @@ pub use points::PointPipeline;
 pub use pose::Pose;
 pub use staging::Handover;
 pub use surface::TessellatedSurface;
-pub use tables::Tables;
+pub use tables::{Retired, Tables};
 pub use target::{
     Attachments, DepthBias, Fill, Fragment, OwnLayout, PipelineOptions, Shading, Target,
 };

@@ -1,11 +1,14 @@
 //! Positions, and what is computed from them: what an instance that deforms has of its own, and rigid instances share.
 
+use std::collections::BTreeMap;
+
 use ash::vk;
 use glam::Vec3;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Residence, SurfaceOptions};
+use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::cached::Cache;
 use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
@@ -22,6 +25,8 @@ pub struct Pose {
     positions: usize,
     points: usize,
     readers: vk::PipelineStageFlags,
+    /// Vertices that were moved since the last upload.
+    moved: BTreeMap<u32, [f32; 3]>,
     pub(super) cache: Option<Cache>,
 }
 
@@ -57,6 +62,7 @@ impl Pose {
             positions: 0,
             points: 0,
             readers: layout.readers(),
+            moved: BTreeMap::new(),
             cache: cached.then(|| Cache::new(tables)).flatten(),
         };
         let mut maker = Maker {
@@ -113,6 +119,23 @@ impl Pose {
     pub unsafe fn cmd_upload(&mut self, device: &ash::Device, cmd: vk::CommandBuffer) {
         // SAFETY: this function's contract.
         unsafe { cmd_copy(device, cmd, &mut self.staging, &self.bound, self.readers) };
+        let moved = std::mem::take(&mut self.moved);
+        if moved.is_empty() {
+            return;
+        }
+        let transfer = vk::PipelineStageFlags::TRANSFER;
+        let write = vk::AccessFlags::TRANSFER_WRITE;
+        let buffer = self.position_buffer();
+        // SAFETY: as above; vertices are the buffer's own.
+        unsafe {
+            cmd_make_visible(device, cmd, self.readers | transfer, transfer, write);
+            for (vertex, position) in moved {
+                let offset = u64::from(vertex) * size_of_val(&position) as u64;
+                device.cmd_update_buffer(cmd, buffer, offset, bytemuck::bytes_of(&position));
+            }
+            let read = vk::AccessFlags::SHADER_READ;
+            cmd_make_visible(device, cmd, transfer, self.readers, read);
+        }
     }
 
     /// The same on a queue that copies while others draw. Where it returns true, [`cmd_acquire`](Self::cmd_acquire) is recorded with the same
@@ -159,12 +182,35 @@ impl Pose {
         let prepared = tables.prepared();
         prepared.check_count("positions", positions.len())?;
         self.positions_changed();
+        self.moved.clear();
         let vertices: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
         let points = prepared.points.compute(&vertices);
         self.staging
             .replace(self.positions, bytemuck::cast_slice(positions))?;
         self.staging
             .replace(self.points, bytemuck::cast_slice(&points))
+    }
+
+    /// Moves single control vertices, to positions in local units ([`Model::position`](crate::mesh::Model::position)); they arrive with the next
+    /// [`cmd_upload`](Self::cmd_upload), in the order of the queue: frames that were recorded before draw them where they were, and nobody waits for these.
+    ///
+    /// # Errors
+    /// [`Misuse::Count`] for a vertex that there is not; [`Misuse::OtherSurface`] for other tables, and for those of methods that compute points
+    /// beforehand: [`write_positions`](Self::write_positions) replaces all. Nothing has changed then.
+    pub fn move_vertices(&mut self, tables: &Tables, moved: &[(u32, [f32; 3])]) -> Result<()> {
+        self.check(tables)?;
+        let prepared = tables.prepared();
+        if prepared.points.count > 0 {
+            return Err(Error::Misuse(Misuse::OtherSurface));
+        }
+        let greatest = moved.iter().map(|&(vertex, _)| vertex).max();
+        if greatest.is_some_and(|vertex| vertex as usize >= prepared.vertex_count()) {
+            let given = greatest.unwrap_or(0) as usize + 1;
+            prepared.check_count("positions", given)?;
+        }
+        self.positions_changed();
+        self.moved.extend(moved.iter().copied());
+        Ok(())
     }
 
     /// The control vertices on the device, three floats each, in local units: a storage buffer that is also a copy's target.

@@ -10,10 +10,10 @@ use crate::frame::{Batch, Cut, Decision, DrawList, Outcome, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
     Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory,
-    Pipelines, PointPipeline, Pose, Tables, View,
+    Pipelines, PointPipeline, Pose, Retired, Tables, View,
 };
 use crate::mesh::Model;
-use crate::method::{CachedPoints, DepthTags, Prepared};
+use crate::method::{CachedPoints, DepthTags, Editable, Prepared, Update};
 
 /// A prepared model on the device: [`Tables`], a [`Pose`] and a [`FrameSlot`] in one. It borrows nothing; the owner calls
 /// [`TessellatedSurface::destroy`].
@@ -52,6 +52,66 @@ impl TessellatedSurface {
         // SAFETY: this function's contract.
         let tables = unsafe { Tables::new(device, allocator, layout, prepared, &options)? };
         // SAFETY: as above; the tables were just made.
+        unsafe {
+            TessellatedSurface::of(
+                device,
+                allocator,
+                layout,
+                model,
+                tables,
+                workarounds,
+                options,
+            )
+        }
+    }
+
+    /// The same of what can be edited, see [`Tables::editable`].
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) and [`Tables::editable`].
+    ///
+    /// # Safety
+    /// As [`new`](Self::new).
+    pub unsafe fn editable(
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        model: &Model,
+        editable: &Editable,
+        workarounds: &[&'static Workaround],
+        options: SurfaceOptions,
+    ) -> Result<TessellatedSurface> {
+        if !editable.prepared().is_of(model) {
+            return Err(Error::Misuse(Misuse::OtherMesh));
+        }
+        // SAFETY: this function's contract.
+        let tables = unsafe { Tables::editable(device, allocator, layout, editable, &options)? };
+        // SAFETY: as above; the tables were just made.
+        unsafe {
+            TessellatedSurface::of(
+                device,
+                allocator,
+                layout,
+                model,
+                tables,
+                workarounds,
+                options,
+            )
+        }
+    }
+
+    /// # Safety
+    /// As [`new`](Self::new), by which the tables were just made.
+    unsafe fn of(
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        model: &Model,
+        tables: Tables,
+        workarounds: &[&'static Workaround],
+        options: SurfaceOptions,
+    ) -> Result<TessellatedSurface> {
+        // SAFETY: this function's contract.
         let slot =
             unsafe { FrameSlot::new(device, allocator, layout, &tables, workarounds, options) };
         let slot = match slot {
@@ -111,7 +171,7 @@ impl TessellatedSurface {
     }
 
     /// Records the copy of what has changed to the device, after what earlier commands of the queue still draw, and before whatever draws next:
-    /// the first time everything, after [`write_positions`](Self::write_positions) the control vertices and their points, else nothing.
+    /// the first time everything, after [`edit`](Self::edit) what it changed, after [`write_positions`](Self::write_positions) the control vertices and their points, else nothing.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made this surface, outside of a render pass, and will be executed. The surface lives until then,
@@ -131,6 +191,34 @@ impl TessellatedSurface {
     pub unsafe fn finish_upload(&mut self, device: &ash::Device, allocator: &mut dyn Memory) {
         // SAFETY: this function's contract.
         unsafe { self.tables.finish_upload(device, allocator) };
+    }
+
+    /// As [`Tables::edit`]: the next [`cmd_upload`](Self::cmd_upload) brings the edit to the device.
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn edit(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        editable: &Editable,
+        update: &Update,
+    ) -> Result<Retired> {
+        let tables = &mut self.tables;
+        // SAFETY: this function's contract.
+        unsafe { tables.edit(device, allocator, layout, editable, update) }
+    }
+
+    /// As [`Pose::move_vertices`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn move_vertices(&mut self, moved: &[(u32, [f32; 3])]) -> Result<()> {
+        self.pose.move_vertices(&self.tables, moved)
     }
 
     /// As [`Pose::write_positions`].

@@ -4,12 +4,13 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Misuse, Result};
 use crate::frame::{Decides, Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
+use crate::gpu::changes::{self, Edited};
 use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
 use crate::gpu::{Layout, Memory};
-use crate::method::{CachedPoints, Prepared, Table, deciding_tables};
+use crate::method::{CachedPoints, Editable, Prepared, Table, Update, deciding_tables};
 
 /// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
 /// `minUniformBufferOffsetAlignment`).
@@ -26,6 +27,34 @@ pub struct Tables {
     bound: Bound,
     staging: Staging,
     readers: vk::PipelineStageFlags,
+    options: SurfaceOptions,
+    /// None where nothing is edited.
+    edited: Option<Edited>,
+}
+
+/// What an edit has replaced on the device. The frames that were recorded before may still read it: the owner calls [`Retired::destroy`] when they have ended.
+#[derive(Debug, Default)]
+#[must_use = "it is destroyed when the frames that were recorded before have ended"]
+pub struct Retired {
+    tables: Option<Box<Tables>>,
+}
+
+impl Retired {
+    /// Whether there is nothing to be destroyed, as after most edits.
+    pub fn is_empty(&self) -> bool {
+        self.tables.is_none()
+    }
+
+    /// Destroys it.
+    ///
+    /// # Safety
+    /// As [`Tables::destroy`]: no submitted command still uses the tables as they were before the edit, and no recorded one will be submitted.
+    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
+        if let Some(tables) = self.tables {
+            // SAFETY: this function's contract.
+            unsafe { tables.destroy(device, allocator) };
+        }
+    }
 }
 
 impl Tables {
@@ -43,6 +72,76 @@ impl Tables {
         prepared: Prepared,
         options: &SurfaceOptions,
     ) -> Result<Tables> {
+        // SAFETY: this function's contract.
+        unsafe { Tables::build(device, allocator, layout, prepared, options, None) }
+    }
+
+    /// The same of what can be edited, with room for what edits append: a quarter more.
+    ///
+    /// # Errors
+    /// As [`Tables::new`]; [`Misuse::EditedCache`] for [`Residence::Cache`].
+    ///
+    /// # Safety
+    /// As [`Tables::new`].
+    pub unsafe fn editable(
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        editable: &Editable,
+        options: &SurfaceOptions,
+    ) -> Result<Tables> {
+        if options.residence == Residence::Cache {
+            return Err(Error::Misuse(Misuse::EditedCache));
+        }
+        let (prepared, edited) = (editable.prepared().clone(), Some(Edited::default()));
+        // SAFETY: this function's contract.
+        unsafe { Tables::build(device, allocator, layout, prepared, options, edited) }
+    }
+
+    /// Brings the tables up to an edit; the next [`cmd_upload`](Self::cmd_upload) records the words that are other ones. Nothing waits: frames that were
+    /// recorded before draw what was there, and those that are recorded behind it draw the edited surface. Poses and frame slots stay; draw lists are made
+    /// anew, and so are commands that were recorded once to be submitted again and again.
+    ///
+    /// Where a table has outgrown its room everything is uploaded to larger buffers, and the ones before are [`Retired`].
+    ///
+    /// # Errors
+    /// [`Misuse::OtherSurface`] where tables, poses and slots have to be made anew ([`Update::is_whole`]), for tables that were not made by
+    /// [`Tables::editable`], and for another update than the one that comes next; as [`Tables::new`] where there is no room. Nothing has changed then.
+    ///
+    /// # Safety
+    /// As [`Tables::new`].
+    pub unsafe fn edit(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        editable: &Editable,
+        update: &Update,
+    ) -> Result<Retired> {
+        changes::check(&self.prepared, editable.prepared(), update)?;
+        let edited = self.edited.as_mut();
+        let edited = edited.ok_or(Error::Misuse(Misuse::OtherSurface))?;
+        if edited.take(editable.prepared(), update, self.options.decides) {
+            self.prepared.adopt(editable.prepared(), update);
+            return Ok(Retired::default());
+        }
+        // SAFETY: this function's contract.
+        let larger =
+            unsafe { Tables::editable(device, allocator, layout, editable, &self.options)? };
+        let tables = Some(Box::new(std::mem::replace(self, larger)));
+        Ok(Retired { tables })
+    }
+
+    /// # Safety
+    /// As [`Tables::new`].
+    unsafe fn build(
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        prepared: Prepared,
+        options: &SurfaceOptions,
+        edited: Option<Edited>,
+    ) -> Result<Tables> {
         let cached = (options.residence == Residence::Cache).then(|| {
             let cuts = options.greatest_cuts().into_iter();
             let levels = cuts.map(|cut| options.backend.cut(cut).cached_level(&prepared));
@@ -55,6 +154,8 @@ impl Tables {
             bound: Bound::default(),
             staging: Staging::default(),
             readers: layout.readers(),
+            options: *options,
+            edited,
         };
         let mut maker = Maker {
             device,
@@ -80,6 +181,7 @@ impl Tables {
             cached,
             bound,
             staging,
+            edited,
             ..
         } = self;
         let mut cached = cached.as_mut().map(|(_, cached)| cached.passes.iter_mut());
@@ -112,15 +214,29 @@ impl Tables {
             if decides == Decides::Device {
                 // Behind those of control points that are cached, be there any or not.
                 others.resize(abi::CACHED_TABLES as usize, Table::default());
-                others.extend(deciding_tables(&prepared.outline, pass));
+                let deciding = deciding_tables(&prepared.outline, pass);
+                if let Some(edited) = edited.as_mut() {
+                    edited.deciding.push(deciding.clone());
+                }
+                others.extend(deciding);
             }
-            let (words, bases) = pass.packed(&others);
+            let (words, bases) = match edited.as_mut() {
+                None => pass.packed(&others),
+                Some(edited) => {
+                    let packed = pass.packed_with_room(&others);
+                    edited.rooms.push(packed.rooms);
+                    (packed.words, packed.bases)
+                }
+            };
             let words: &[u8] = bytemuck::cast_slice(&words);
             let bases = bytemuck::bytes_of(&bases);
             bytes[offset as usize..][..bases.len()].copy_from_slice(bases);
             // SAFETY: as above.
             let tables = unsafe { bound.add_target(maker, "tables", words.len() as u64)? };
             staging.add(tables, words);
+            if let Some(edited) = edited.as_mut() {
+                edited.buffers.push(tables);
+            }
             sets.push(vec![
                 Binding::storage(abi::BINDING_TABLES, tables),
                 Binding::uniform(
@@ -141,7 +257,7 @@ impl Tables {
         }
     }
 
-    /// Records the copy to the device, before whatever draws next: the first time everything, afterwards nothing.
+    /// Records the copy to the device, before whatever draws next: the first time everything, after an [`edit`](Self::edit) what it changed, else nothing.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made these tables, outside of a render pass, and will be executed. They live until then, and
@@ -149,9 +265,13 @@ impl Tables {
     pub unsafe fn cmd_upload(&mut self, device: &ash::Device, cmd: vk::CommandBuffer) {
         // SAFETY: this function's contract.
         unsafe { cmd_copy(device, cmd, &mut self.staging, &self.bound, self.readers) };
+        if let Some(edited) = &mut self.edited {
+            // SAFETY: as above.
+            unsafe { edited.cmd_write(device, cmd, &self.bound, &self.prepared, self.readers) };
+        }
     }
 
-    /// The same on a queue that copies while others draw. Where it returns true, [`cmd_acquire`](Self::cmd_acquire) is recorded with the same
+    /// The same on a queue that copies while others draw, but for edits, which [`cmd_upload`](Self::cmd_upload) brings on a queue that draws. Where it returns true, [`cmd_acquire`](Self::cmd_acquire) is recorded with the same
     /// families for a queue that draws, and executed after this by a semaphore, before anything is drawn there; otherwise nothing has changed.
     ///
     /// # Safety

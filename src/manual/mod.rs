@@ -4,6 +4,7 @@
 //! - [Scheme](schemes): the schemes that refine it
 //! - [Truth](truth): the limit at any point, in f64
 //! - [Plans](plans): quadtrees and stencils, and what they cost
+//! - [Edits](edits): creases, corners, holes and positions that change, while frames are in flight
 //! - [Drawing](drawing): methods, the scratch ring, positions
 //! - [Triangles](triangles): methods for triangles, and points that are computed beforehand
 //! - [Tables of basis functions](tables): tables of basis functions
@@ -37,6 +38,7 @@ chapters! {
     schemes
     truth
     plans
+    edits
     drawing
     triangles
     tables

@@ -1,6 +1,7 @@
 //! The control mesh: positions, faces and the tags that shape their limit surface.
 
 mod checks;
+mod tags;
 
 use std::sync::Arc;
 
@@ -11,6 +12,8 @@ use crate::mesh::Scheme;
 use crate::mesh::creased_edges::CreasedEdges;
 use crate::mesh::faces::Faces;
 use crate::mesh::placement::{Placement, bounds};
+
+pub(super) use checks::{check_position, check_sharpness};
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
 pub const INFINITE_SHARPNESS: f32 = 10.0;

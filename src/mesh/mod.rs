@@ -3,6 +3,7 @@
 mod builtin;
 mod control_mesh;
 mod creased_edges;
+mod edit;
 pub(crate) mod faces;
 mod model;
 mod obj;
@@ -20,6 +21,7 @@ pub use control_mesh::{
     BoundaryInterpolation, ControlMesh, ControlMeshBuilder, Corner, Crease, CreaseMethod,
     FaceVarying, INFINITE_SHARPNESS, SchemeOptions, TriangleSubdivision,
 };
+pub use edit::{ChangeSet, Edit};
 pub use model::Model;
 pub use obj::{read_obj, read_obj_bytes};
 pub use placement::Placement;

@@ -1,5 +1,7 @@
 //! A control mesh made ready for methods and GPU.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec3, Vec3};
 
 use crate::mesh::topology::Topology;
@@ -10,9 +12,17 @@ use crate::mesh::{ControlMesh, Placement};
 /// Positions are f32 relative to the mesh's [`Placement`]: whatever its size, and however far it lies from the origin, nothing is lost.
 #[derive(Clone, Debug)]
 pub struct Model {
-    mesh: ControlMesh,
-    topology: Topology,
-    placement: Placement,
+    pub(super) mesh: ControlMesh,
+    pub(super) topology: Topology,
+    pub(super) placement: Placement,
+    /// A number that no other state of a model has.
+    pub(super) revision: u64,
+}
+
+/// A number that no other state of a model has.
+pub(super) fn next_revision() -> u64 {
+    static REVISION: AtomicU64 = AtomicU64::new(1);
+    REVISION.fetch_add(1, Ordering::Relaxed)
 }
 
 /// What is smaller in local positions is zero: it is nothing beside the mesh, and products of it would leave the range of normal floats, which
@@ -25,8 +35,14 @@ impl Model {
         Model {
             topology: Topology::new(&mesh),
             placement: mesh.placement(),
+            revision: next_revision(),
             mesh,
         }
+    }
+
+    /// A number that no other state of a model has; clones share it.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The control mesh.
@@ -60,13 +76,18 @@ impl Model {
     /// The control vertices in local units, those that no face uses at the origin. No zero is negative: whatever faces make of one has the same
     /// bits.
     pub fn positions(&self) -> Vec<Vec3> {
-        let placed = |(vertex, &position): (u32, &DVec3)| {
-            if self.topology.vertex_faces(vertex).is_empty() {
-                return Vec3::ZERO;
-            }
-            let local = self.placement.local(position);
-            DVec3::select(local.abs().cmplt(DVec3::splat(LEAST)), DVec3::ZERO, local).as_vec3()
+        let all = 0..self.mesh.vertex_count() as u32;
+        all.map(|vertex| self.position(vertex)).collect()
+    }
+
+    /// One of these; at the origin where there is no such vertex.
+    pub fn position(&self, vertex: u32) -> Vec3 {
+        let position = self.mesh.positions().get(vertex as usize);
+        let is_used = !self.topology.vertex_faces(vertex).is_empty();
+        let Some(&position) = position.filter(|_| is_used) else {
+            return Vec3::ZERO;
         };
-        (0..).zip(self.mesh.positions()).map(placed).collect()
+        let local = self.placement.local(position);
+        DVec3::select(local.abs().cmplt(DVec3::splat(LEAST)), DVec3::ZERO, local).as_vec3()
     }
 }

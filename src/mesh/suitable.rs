@@ -30,16 +30,24 @@ impl Scheme {
         let corners = mesh.corners().iter();
         let corners =
             corners.map(|corner| (Place::Vertex(corner.vertex as usize), corner.sharpness));
-        match creases.chain(corners).find(|tag| is_semi_sharp(tag.1)) {
-            None => Ok(()),
-            Some((place, sharpness)) => Err(Error::input(
-                place,
-                format!(
-                    "its sharpness is {sharpness}, but the scheme {self} has no semi-sharp rules"
-                ),
-                "make it 0 or 10, or choose the scheme loop",
-            )),
+        creases
+            .chain(corners)
+            .try_for_each(|(place, sharpness)| self.check_sharpness(place, sharpness))
+    }
+
+    /// Whether the scheme has rules for a sharpness.
+    ///
+    /// # Errors
+    /// As [`Scheme::check`].
+    pub(super) fn check_sharpness(self, place: Place, sharpness: f32) -> Result<()> {
+        if self != Scheme::Butterfly || !is_semi_sharp(sharpness) {
+            return Ok(());
         }
+        Err(Error::input(
+            place,
+            format!("its sharpness is {sharpness}, but the scheme {self} has no semi-sharp rules"),
+            "make it 0 or 10, or choose the scheme loop",
+        ))
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod connect;
 mod manifold;
+mod retag;
 #[cfg(test)]
 mod tests;
 
@@ -19,6 +20,7 @@ use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
 use connect::Lists;
+pub(crate) use retag::Retagged;
 
 /// An edge and how sharp it is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -60,6 +60,7 @@ pub const METHOD: Method = Method {
     uses_tables: true,
     covers: covered::check,
     prepare,
+    edits: None,
 };
 
 fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {

@@ -30,6 +30,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     covers: method::every_mesh,
     prepare,
+    edits: None,
 };
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {

@@ -50,10 +50,12 @@ mod bft;
 mod bicubic;
 mod cached;
 mod cell;
+mod change;
 #[cfg(feature = "vulkan")]
 mod deciding;
 mod displacement;
 mod edge_field;
+mod editable;
 mod flat;
 mod gregory;
 mod options;
@@ -81,13 +83,16 @@ use crate::error::{Error, Result};
 use crate::mesh::{Model, Scheme};
 use crate::plan::Database;
 use crate::tessellation::Domain;
+use editable::Edits;
 use origin::Origin;
 
 pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use cell::Cell;
+pub use change::{PassChange, Update};
 #[cfg(feature = "vulkan")]
 pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
+pub use editable::Editable;
 pub use options::{MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use pass::{Pass, Twin, is_on_hexagon};
@@ -172,7 +177,12 @@ pub struct Method {
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
     prepare: fn(&Model, MethodOptions, &Database) -> Result<Prepared>,
+    /// The same with what prepares again what edits influence; None where that is everything.
+    edits: Option<Editing>,
 }
+
+/// Prepares a model that will be edited.
+type Editing = fn(&Model, MethodOptions, &Database) -> Result<(Prepared, Box<dyn Edits>)>;
 
 impl Method {
     /// Prepares a model. Options of other methods do not count.
@@ -195,7 +205,12 @@ impl Method {
         database: &Database,
     ) -> Result<Prepared> {
         self.check_model(model)?;
-        let mut prepared = (self.prepare)(model, options.into(), database)?;
+        let prepared = (self.prepare)(model, options.into(), database)?;
+        Ok(self.completed(prepared, model))
+    }
+
+    /// With what all methods' have.
+    fn completed(&self, mut prepared: Prepared, model: &Model) -> Prepared {
         prepared.method = self.name;
         prepared.outline = Outline::new(model.topology());
         prepared.origin = Origin::new(model);
@@ -205,7 +220,7 @@ impl Method {
             pass.sides = sides;
             pass.needs = [model.mesh().vertex_count(), prepared.points.count as usize];
         }
-        Ok(prepared)
+        prepared
     }
 
     /// Whether the method can draw a model, without preparing it.
@@ -381,6 +396,37 @@ impl Prepared {
     /// A number that clones share and nothing else that was prepared has.
     pub(crate) fn number(&self) -> u64 {
         self.origin.number
+    }
+
+    /// A number that tells what it was before an edit from what it is now.
+    pub(crate) fn version(&self) -> u64 {
+        self.origin.version
+    }
+
+    /// Says that it was edited, and is a model's now; as something else where devices have to make all anew.
+    fn follow(&mut self, model: &Model, is_whole: bool) {
+        let Origin {
+            number, version, ..
+        } = self.origin;
+        self.origin = Origin::new(model);
+        if !is_whole {
+            (self.origin.number, self.origin.version) = (number, version + 1);
+        }
+        self.plans = None;
+    }
+
+    /// The words of all tables.
+    fn table_words(&self) -> usize {
+        let words = |pass: &Pass| {
+            let own = pass.tables.iter().map(|table| table.len());
+            pass.controls.len() + own.sum::<usize>()
+        };
+        self.passes.iter().map(words).sum()
+    }
+
+    /// How many patches each pass has room for.
+    fn capacities(&self) -> Vec<usize> {
+        self.passes.iter().map(|pass| pass.patches.len()).collect()
     }
 
     /// Refuses lists that have not one entry a control vertex.

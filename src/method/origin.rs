@@ -16,6 +16,8 @@ pub(super) struct Origin {
     pub vertices: usize,
     /// A number of its own.
     pub number: u64,
+    /// How often it was edited.
+    pub version: u64,
 }
 
 impl Origin {
@@ -26,6 +28,7 @@ impl Origin {
             mesh: fingerprint(model),
             vertices: model.mesh().vertex_count(),
             number: NUMBER.fetch_add(1, Ordering::Relaxed),
+            version: 0,
         }
     }
 

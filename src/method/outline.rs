@@ -118,7 +118,7 @@ impl Outline {
 }
 
 /// The sides to which a patch's edges belong, from corner i to corner i + 1; a triangle's last one twice.
-fn sides(topology: &Topology, part: Part, patch: &abi::Patch) -> [u32; 4] {
+pub(super) fn sides(topology: &Topology, part: Part, patch: &abi::Patch) -> [u32; 4] {
     let edges = topology.face_edges(part.face);
     let within = topology.edge_count() as u32 + part.face;
     let n = part.domain.corners();

@@ -88,7 +88,7 @@ impl Pass {
     /// no number, or the controls are of another number of vertices or points, there is no surface: position and normal are zero.
     pub fn evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
         let given = [controls.vertices.len(), controls.points.len()];
-        if patch >= self.patches.len() || uv.is_nan() || given != self.needs {
+        if self.is_vacant(patch) || uv.is_nan() || given != self.needs {
             return SurfacePoint::default();
         }
         (self.twin)(
@@ -111,7 +111,7 @@ impl Pass {
     pub fn cell(&self, patch: usize, uv: Vec2) -> Option<Cell> {
         let cell = self
             .cell
-            .filter(|_| patch < self.patches.len() && !uv.is_nan())?;
+            .filter(|_| !self.is_vacant(patch) && !uv.is_nan())?;
         cell(self, patch, self.domain.nearest(uv.to_array()).into())
     }
 
@@ -139,6 +139,9 @@ impl Pass {
         let (Some(count), Some(record)) = (self.hull, self.patches.get(patch)) else {
             return &[];
         };
+        if self.is_vacant(patch) {
+            return &[];
+        }
         let first = record.controls as usize;
         &self.controls[first..first + count(self, patch) as usize]
     }
@@ -147,6 +150,19 @@ impl Pass {
     pub fn spline(&self, patch: usize) -> Option<[u32; 16]> {
         let points = self.hull(patch);
         points.try_into().ok().filter(|_| self.is_spline)
+    }
+
+    /// Whether nothing is drawn of a patch's slot: there is no such slot, or an edit has left it vacant, see [`Editable`](super::Editable).
+    pub fn is_vacant(&self, patch: usize) -> bool {
+        let record = self.patches.get(patch);
+        record.is_none_or(|record| record.flags & abi::PATCH_VACANT != 0)
+    }
+
+    /// How many slots lead up to the last that is not vacant.
+    pub fn extent(&self) -> usize {
+        let is_drawn = |record: &abi::Patch| record.flags & abi::PATCH_VACANT == 0;
+        let last = self.patches.iter().rposition(is_drawn);
+        last.map_or(0, |last| last + 1)
     }
 
     /// The points that patch `patch` needs in the ring at `level`, from 10 on as at 10; none where there is no such patch.
@@ -166,7 +182,7 @@ impl Pass {
     /// What a list has for a patch's plan.
     fn by_plan<'a, T>(&self, list: &'a [T], patch: usize) -> Option<&'a T> {
         let plan = self.patches.get(patch)?.plan;
-        list.get(plan as usize)
+        list.get(plan as usize).filter(|_| !self.is_vacant(patch))
     }
 }
 

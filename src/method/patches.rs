@@ -22,29 +22,52 @@ pub struct Part {
 
 /// The parts of every face that is no hole, in ptex order.
 pub fn parts(model: &Model) -> Vec<Part> {
-    let topology = model.topology();
-    let scheme = model.mesh().options().scheme;
     let mut parts = Vec::new();
     let mut ptex = 0;
-    for face in 0..topology.face_count() as u32 {
-        let arity = topology.face(face).len() as u32;
-        let whole = scheme.is_whole(arity as usize);
-        let count = if whole { 1 } else { arity };
-        let domain = match arity {
-            3 if whole => Domain::Triangles,
-            _ => Domain::Quads,
-        };
-        if !topology.is_hole(face) {
-            parts.extend((0..count).map(|corner| Part {
-                domain,
-                face,
-                corner,
-                ptex: ptex + corner,
-            }));
+    for face in 0..model.topology().face_count() as u32 {
+        let all = parts_at(model, face, ptex);
+        ptex += all.len() as u32;
+        if !model.topology().is_hole(face) {
+            parts.extend(all);
         }
-        ptex += count;
     }
     parts
+}
+
+/// The parts of those of some faces, in ascending order, that are no holes, and the ptex faces of the others.
+pub fn parts_of(model: &Model, faces: &[u32]) -> (Vec<Part>, Vec<u32>) {
+    let only_quads = model.topology().quads().is_some();
+    let whole = only_quads && model.mesh().options().scheme.is_whole(4);
+    let first = match whole {
+        true => Vec::new(),
+        false => model.mesh().ptex_offsets(),
+    };
+    let (mut parts, mut holes) = (Vec::new(), Vec::new());
+    for &face in faces {
+        let ptex = first.get(face as usize).copied().unwrap_or(face);
+        let all = parts_at(model, face, ptex);
+        match model.topology().is_hole(face) {
+            true => holes.extend(all.map(|part| part.ptex)),
+            false => parts.extend(all),
+        }
+    }
+    (parts, holes)
+}
+
+/// The parts of a face whose first ptex number is known.
+fn parts_at(model: &Model, face: u32, ptex: u32) -> impl ExactSizeIterator<Item = Part> {
+    let arity = model.topology().face(face).len() as u32;
+    let whole = model.mesh().options().scheme.is_whole(arity as usize);
+    let domain = match arity {
+        3 if whole => Domain::Triangles,
+        _ => Domain::Quads,
+    };
+    (0..if whole { 1 } else { arity }).map(move |corner| Part {
+        domain,
+        face,
+        corner,
+        ptex: ptex + corner,
+    })
 }
 
 /// The common fields of the patch of a part whose corner 0 is the quad's corner `turn`.

@@ -9,6 +9,19 @@ struct Placed<'a> {
     base: usize,
     stride: usize,
     words: &'a [u32],
+    /// The words that it may get besides.
+    spare: usize,
+}
+
+/// The tables of a pass one behind the other, as they are on a device.
+#[cfg(feature = "vulkan")]
+pub(crate) struct Packed {
+    /// The words of the buffer.
+    pub words: Vec<u32>,
+    /// Where its tables begin.
+    pub bases: abi::Bases,
+    /// The words that each table may take: patches, numbers of control vertices, texture coordinates, the method's own tables, and others.
+    pub rooms: Vec<std::ops::Range<usize>>,
 }
 
 impl Placed<'_> {
@@ -21,7 +34,7 @@ impl Placed<'_> {
 
 impl Pass {
     /// Patches, numbers of control vertices, texture coordinates, the method's own tables, and others: each begins at a multiple of its elements' size.
-    fn placed<'a>(&'a self, others: &'a [Table]) -> Vec<Placed<'a>> {
+    fn placed<'a>(&'a self, others: &'a [Table], spare: fn(usize) -> usize) -> Vec<Placed<'a>> {
         let shared = [
             (size_of::<abi::Patch>(), bytemuck::cast_slice(&self.patches)),
             (size_of::<u32>(), &self.controls[..]),
@@ -42,8 +55,9 @@ impl Pass {
                 base,
                 stride,
                 words,
+                spare: spare(words.len()),
             };
-            end = placed.range().end;
+            end = placed.range().end + placed.spare;
             placed
         });
         all.collect()
@@ -51,18 +65,36 @@ impl Pass {
 
     /// The bytes that its tables take on a device, all in one buffer.
     pub fn table_bytes(&self) -> u64 {
-        Self::bytes(&self.placed(&[]))
+        Self::bytes(&self.placed(&[], |_| 0))
     }
 
     fn bytes(placed: &[Placed<'_>]) -> u64 {
-        placed.last().map_or(0, |last| 4 * last.range().end as u64)
+        let end = |last: &Placed<'_>| last.range().end + last.spare;
+        placed.last().map_or(0, |last| 4 * end(last) as u64)
     }
 
     /// The words of that buffer, with other tables behind the method's own, and where its tables begin there.
     pub fn packed(&self, others: &[Table]) -> (Vec<u32>, abi::Bases) {
-        let placed = self.placed(others);
-        let mut words = vec![0; Self::bytes(&placed) as usize / 4];
-        for table in &placed {
+        self.pack(&self.placed(others, |_| 0))
+    }
+
+    /// The same with room in each table for what edits append.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn packed_with_room(&self, others: &[Table]) -> Packed {
+        // What is there for good takes a quarter more, and an edit of a small mesh some kilobytes.
+        let placed = self.placed(others, |words| words / 4 + 4096);
+        let (words, bases) = self.pack(&placed);
+        let room = |table: &Placed<'_>| table.range().start..table.range().end + table.spare;
+        Packed {
+            words,
+            bases,
+            rooms: placed.iter().map(room).collect(),
+        }
+    }
+
+    fn pack(&self, placed: &[Placed<'_>]) -> (Vec<u32>, abi::Bases) {
+        let mut words = vec![0; Self::bytes(placed) as usize / 4];
+        for table in placed {
             words[table.range()].copy_from_slice(table.words);
         }
         let base = |number: usize| placed.get(number).map_or(0, |table| table.base as u32);

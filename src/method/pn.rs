@@ -38,6 +38,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     covers: vertices::whole_faces,
     prepare,
+    edits: None,
 };
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {

@@ -39,6 +39,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     covers: bounded::check,
     prepare,
+    edits: None,
 };
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {

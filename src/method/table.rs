@@ -21,9 +21,35 @@ impl Table {
         }
     }
 
-    /// Elements of so many words, which are taken over: large tables are not there twice.
-    pub(super) fn of_words(words: Vec<u32>, stride: usize) -> Table {
-        Table { words, stride }
+}
+
+impl Table {
+    /// The words of elements, and how many each has, for [`Table::grow`].
+    pub(super) fn grown<T: NoUninit>(elements: &[T]) -> (&[u32], usize) {
+        (bytemuck::cast_slice(elements), size_of::<T>() / 4)
+    }
+
+    /// Takes what stands behind its end in a list that only grows, of which the last word may have been half empty. Tells which words are new.
+    pub(super) fn grow(&mut self, words: &[u32], stride: usize) -> std::ops::Range<usize> {
+        self.stride = stride;
+        let known = self.words.len();
+        let same = match known.checked_sub(1) {
+            Some(last) if self.words[last] != words[last] => last,
+            _ => known,
+        };
+        self.words.truncate(same);
+        self.words.extend_from_slice(&words[same..]);
+        same..words.len()
+    }
+}
+
+impl Table {
+    /// Takes over some words of another one, which has as many or more.
+    #[cfg(feature = "vulkan")]
+    pub(super) fn adopt(&mut self, other: &Table, range: std::ops::Range<usize>) {
+        self.stride = other.stride;
+        self.words.resize(other.words.len(), 0);
+        self.words[range.clone()].copy_from_slice(&other.words[range]);
     }
 }
 

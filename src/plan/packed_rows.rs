@@ -149,11 +149,6 @@ impl PackedRows {
         ]);
     }
 
-    /// The words of rows, sets and patterns, see [`RowsView`].
-    pub(crate) fn into_words(self) -> [Vec<u32>; 3] {
-        [self.rows.into_flattened(), self.sets.words, self.patterns]
-    }
-
     /// Whether places still fit into words.
     fn check(&self) -> Result<()> {
         check(self.sets.words.len())?;
@@ -215,8 +210,9 @@ impl PackedRows {
         // Twice as many, for the rounding of floats.
         let words = 2 * products.div_ceil(u64::from(abi::PRODUCTS_A_WORD)) as usize;
         if self.bytes() < 4 * words {
+            // A set of its own: others may follow.
             let more = words - self.bytes() / 4;
-            self.sets.words.resize(self.sets.words.len() + more, 0);
+            self.sets.push(&vec![0; more]);
         }
     }
 

@@ -22,16 +22,16 @@ const SLOTS: usize = 2;
 const FRAMES: usize = 12;
 
 /// A frame slot with commands of its own, and what tells when they are done.
-struct Flight<'a> {
+pub struct Flight<'a> {
     gpu: &'a Gpu,
-    slot: Owned<FrameSlot>,
+    pub slot: Owned<FrameSlot>,
     pool: vk::CommandPool,
     cmd: vk::CommandBuffer,
     done: vk::Fence,
 }
 
 impl<'a> Flight<'a> {
-    fn new(gpu: &'a Gpu, slot: Owned<FrameSlot>) -> Flight<'a> {
+    pub fn new(gpu: &'a Gpu, slot: Owned<FrameSlot>) -> Flight<'a> {
         let device = gpu.device.raw();
         let pool = vk::CommandPoolCreateInfo::default()
             .queue_family_index(gpu.device.queue_family())
@@ -98,7 +98,7 @@ impl<'a> Flight<'a> {
     }
 
     /// Submits what is recorded, and the reading back; returns as soon as the queue has it.
-    fn send(&self, record: impl FnOnce(vk::CommandBuffer, &FrameSlot)) {
+    pub fn send(&self, record: impl FnOnce(vk::CommandBuffer, &FrameSlot)) {
         let device = self.gpu.device.raw();
         // SAFETY: all of one live device; what used the commands before has landed.
         unsafe {
@@ -119,7 +119,7 @@ impl<'a> Flight<'a> {
     }
 
     /// Waits for the frame, and returns what it captured.
-    fn land(&mut self) -> Vec<Captured> {
+    pub fn land(&mut self) -> Vec<Captured> {
         self.wait();
         let vertices = self.slot.captured().expect("it was read back").to_vec();
         once_each(vertices)

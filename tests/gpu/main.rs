@@ -12,6 +12,7 @@ mod canvas;
 mod culling;
 mod decide;
 mod edges;
+mod edits;
 mod flight;
 mod hexagon;
 mod instances;

@@ -39,31 +39,29 @@ pub(super) fn check_positions(mesh: &ControlMesh) -> Result<()> {
     if mesh.positions.iter().all(is_fine) {
         return Ok(());
     }
-    let refused = |vertex: usize, problem: &str, remedy: &str| {
-        let problem = format!("its position {} {problem}", mesh.positions[vertex]);
+    let check = |vertex: usize, used| check_position(vertex, mesh.positions[vertex], used);
+    (0..mesh.vertex_count()).try_for_each(|vertex| check(vertex, false))?;
+    let mut used = mesh.faces.vertices().iter();
+    used.try_for_each(|&vertex| check(vertex as usize, true))
+}
+
+/// Refuses positions that nothing can be calculated with; one that no face uses need only be finite.
+pub(in crate::mesh) fn check_position(vertex: usize, position: DVec3, is_used: bool) -> Result<()> {
+    let refused = |problem: &str, remedy: &str| {
+        let problem = format!("its position {position} {problem}");
         Err(Error::input(Place::Vertex(vertex), problem, remedy))
     };
-    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
+    if !position.is_finite() {
         let remedy = "replace NaN and infinite coordinates by numbers";
-        return refused(vertex, "is not finite", remedy);
+        return refused("is not finite", remedy);
     }
-    let is_large = |vertex: u32| {
-        let position = mesh.positions[vertex as usize];
-        position.abs().max_element() > GREATEST_COORDINATE
-    };
-    match mesh
-        .faces
-        .vertices()
-        .iter()
-        .find(|&&vertex| is_large(vertex))
-    {
-        None => Ok(()),
-        Some(&vertex) => refused(
-            vertex as usize,
+    if is_used && position.abs().max_element() > GREATEST_COORDINATE {
+        return refused(
             "is beyond what double precision can calculate with",
             "coordinates go up to 1e300: scale the mesh down",
-        ),
+        );
     }
+    Ok(())
 }
 
 pub(super) fn check_faces(mesh: &ControlMesh) -> Result<()> {
@@ -163,7 +161,7 @@ pub(super) fn check_tags(mesh: &ControlMesh) -> Result<()> {
     check_texture(mesh)
 }
 
-fn check_sharpness(place: Place, sharpness: f32) -> Result<()> {
+pub(in crate::mesh) fn check_sharpness(place: Place, sharpness: f32) -> Result<()> {
     if sharpness >= 0.0 {
         return Ok(());
     }

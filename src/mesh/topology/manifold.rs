@@ -17,18 +17,22 @@ impl Topology {
             }
         }
         for vertex in 0..self.vertex_count() as u32 {
-            let is_manifold = !at_others[vertex as usize];
+            let plain = !at_others[vertex as usize] && self.is_plain_fan(vertex);
             if self.is_interpolated_corner(vertex)
-                || !(is_manifold && self.is_plain_fan(vertex))
-                    && self.is_non_manifold_corner(vertex, &manifold)
+                || !plain && self.is_non_manifold_corner(vertex, &manifold)
             {
                 self.vertex_sharpness[vertex as usize] = INFINITE_SHARPNESS;
             }
         }
     }
 
+    /// Whether a vertex is made infinitely sharp, whatever its tag says.
+    pub(super) fn is_sharpened(&self, vertex: u32, manifold: &[bool]) -> bool {
+        self.is_interpolated_corner(vertex) || self.is_non_manifold_corner(vertex, manifold)
+    }
+
     /// Whether each edge has at most two faces, and two walk it in opposite directions.
-    fn manifold_edges(&self) -> Vec<bool> {
+    pub(super) fn manifold_edges(&self) -> Vec<bool> {
         // How often each is walked forwards, and in the upper half how often backwards.
         let mut walks = vec![0u8; self.edges.len()];
         for (&from, &edge) in self.faces.vertices().iter().zip(&self.face_edges) {

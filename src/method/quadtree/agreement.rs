@@ -5,7 +5,7 @@
 //! Where they do not, or where one side has other cells than the other, the edge gets a plan of its own.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 
 use crate::abi;
@@ -13,7 +13,8 @@ use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::plain::is_plain;
-use crate::plan::{PackedPlans, Plan, Row, RowsView, SmoothQuads, Stretch, Strip};
+use crate::method::quadtree::store::Store;
+use crate::plan::{Plan, Row, RowsView, SmoothQuads, Stretch, Strip};
 
 /// A patch's edge.
 #[derive(Clone, Copy)]
@@ -28,7 +29,7 @@ struct Side<'a> {
     first_row: u32,
 }
 
-/// Whether each edge of the mesh needs no plan.
+/// Of the edges of some patches those that need no plan.
 ///
 /// What two faces have alike depends on their plans, and on which vertices of one ring are which of the other: pairs that are alike in this are looked
 /// at once.
@@ -36,17 +37,18 @@ pub fn agreed_edges(
     topology: &Topology,
     smooth: &SmoothQuads<'_>,
     patches: &Irregulars<'_>,
-    plans: &[&Plan],
-    packed: &PackedPlans,
-) -> Vec<bool> {
-    let pairs = pairs(topology, smooth, patches);
+    slots: &[u32],
+    store: &Store,
+) -> Vec<u32> {
+    let pairs = pairs(topology, smooth, patches, slots);
+    let packed = &store.packed;
     let side = |number: u32| {
         let patch = patches.get(number / 4);
         let plan = patch.record.plan as usize;
         Side {
             topology,
             patch,
-            plan: plans[plan],
+            plan: store.plan(patch.record.plan),
             edge: number % 4,
             rows: packed.rows.view(),
             first_row: packed.headers[plan].rows,
@@ -71,11 +73,36 @@ pub fn agreed_edges(
         .par_iter()
         .map(|&&[one, other]| side(one).agrees(side(other)))
         .collect();
-    let mut agreed = vec![false; topology.edge_count()];
-    for (&[one, _], number) in pairs.iter().zip(numbers) {
-        agreed[side(one).number() as usize] = agree[number as usize];
+    let agreeing = pairs.iter().zip(numbers);
+    let agreeing = agreeing.filter(|&(_, number)| agree[number as usize]);
+    agreeing.map(|(&[one, _], _)| side(one).number()).collect()
+}
+
+/// Takes down which edges of some faces are agreed upon, and adds the patches beyond those of which that has changed.
+pub fn agree(
+    topology: &Topology,
+    faces: &[u32],
+    now: &[u32],
+    agreed: &mut [bool],
+    patches: &Irregulars<'_>,
+    slots: &mut Vec<u32>,
+) {
+    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
+    let before: Vec<bool> = edges().map(|&edge| agreed[edge as usize]).collect();
+    edges().for_each(|&edge| agreed[edge as usize] = false);
+    now.iter().for_each(|&edge| agreed[edge as usize] = true);
+    let changed = edges()
+        .zip(before)
+        .filter(|&(&edge, before)| agreed[edge as usize] != before);
+    let beyond = changed.flat_map(|(&edge, _)| topology.edge_faces(edge));
+    let mut others: Vec<u32> = beyond.filter_map(|&face| patches.of_face(face)).collect();
+    if others.is_empty() {
+        return;
     }
-    agreed
+    others.sort_unstable();
+    others.dedup();
+    let known: FxHashSet<u32> = slots.iter().copied().collect();
+    slots.extend(others.into_iter().filter(|slot| !known.contains(slot)));
 }
 
 /// Of each vertex of a ring, where it stands in another.
@@ -90,38 +117,50 @@ enum Key {
     Any(Box<[u8]>),
 }
 
-/// The two sides of each edge that quads with plans have on both, and that is neither plain nor infinitely sharp; each a number, 4 times the patch and its
-/// edge.
-fn pairs(topology: &Topology, smooth: &SmoothQuads<'_>, patches: &Irregulars<'_>) -> Vec<[u32; 2]> {
-    const NONE: u32 = u32::MAX;
-    let mut of_faces = vec![NONE; topology.face_count()];
+/// The two sides of each edge of some patches that quads with plans have on both, and that is neither plain nor infinitely sharp; each a number, 4 times the
+/// patch and its edge. That of the lower face comes first, whoever asks.
+fn pairs(
+    topology: &Topology,
+    smooth: &SmoothQuads<'_>,
+    patches: &Irregulars<'_>,
+    slots: &[u32],
+) -> Vec<[u32; 2]> {
+    let mut met = vec![false; topology.edge_count()];
     let mut pairs = Vec::new();
-    for (number, patch) in (0..).zip(patches.iter()) {
+    for &slot in slots {
+        let patch = patches.get(slot);
         let face = patch.record.part.face;
-        let edges = topology.face_edges(face);
         // Sums over longer rings are compensated, and so depend on the weights that are zero.
-        if !patch.is_short() || edges.len() != 4 {
+        if patches.of_face(face) != Some(slot) {
             continue;
         }
-        of_faces[face as usize] = number;
         let turn = patch.turn(topology);
         for edge in 0..4 {
-            let at = edges[((turn + edge) % 4) as usize];
+            let at = topology.face_edges(face)[((turn + edge) % 4) as usize];
             let &[one, two] = topology.edge_faces(at) else {
                 continue;
             };
             let beyond = if one == face { two } else { one };
-            let other = of_faces[beyond as usize];
             let own = topology.edge(at);
             let is_plain = || own.vertices.iter().all(|&vertex| is_plain(smooth, vertex));
-            if other == NONE || beyond == face || is_infinite(own.sharpness) || is_plain() {
+            if met[at as usize] || beyond == face || is_infinite(own.sharpness) || is_plain() {
                 continue;
             }
+            let Some(other) = patches.of_face(beyond) else {
+                continue;
+            };
+            met[at as usize] = true;
             let edges = topology.face_edges(beyond).iter();
             let corner = edges.into_iter().position(|&edge| edge == at);
             let corner = corner.expect("a face on the edge has it") as u32;
             let turn = patches.get(other).turn(topology);
-            pairs.push([4 * other + (corner + 4 - turn) % 4, 4 * number + edge]);
+            let own = 4 * slot + edge;
+            let other = 4 * other + (corner + 4 - turn) % 4;
+            pairs.push(if beyond < face {
+                [other, own]
+            } else {
+                [own, other]
+            });
         }
     }
     pairs

@@ -15,12 +15,12 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
-use crate::method::quadtree::agreement::agreed_edges;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, is_turned_corner, vertex_rows};
+use crate::method::quadtree::store::Store;
 use crate::method::quadtree::subjects::{Known, LONG, Line, LongRings, Point, Shared, Subject};
-use crate::plan::{Database, PackedPlans, Plan, PlanOptions, Ring, Side, SmoothQuads};
+use crate::plan::{Database, PlanOptions, Ring, Side, SmoothQuads};
 
 /// The levels that a patch can be drawn at.
 const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
@@ -36,13 +36,13 @@ pub struct Given<'a> {
     pub topology: &'a Topology,
     /// What is smooth in it.
     pub smooth: &'a SmoothQuads<'a>,
-    /// Its irregular patches.
+    /// The irregular patches of a pass.
     pub patches: &'a Irregulars<'a>,
-    /// The plans of their insides.
-    pub plans: &'a [&'a Plan],
+    /// Of each edge of the mesh, whether both faces there evaluate it with points of their own, see `agreement.rs`.
+    pub agreed: &'a [bool],
 }
 
-/// Borders, each once.
+/// Borders, each once. They only ever grow, and their numbers stay.
 #[derive(Default)]
 pub struct Borders {
     /// The borders.
@@ -51,14 +51,24 @@ pub struct Borders {
     pub uses: Vec<abi::Use>,
     /// Where the points of slots end.
     pub ends: Vec<abi::Ends>,
-    /// Of each irregular patch: the number of its border.
+    /// Roots of the trees of agreed edges, by plan, edge, whether the patch is mirrored, and whether the edge is flipped.
+    strips: FxHashMap<(u32, u32, bool, bool), u32>,
+    /// Where lists of places begin among the numbers of control vertices.
+    lists: FxHashMap<List, u32>,
+    /// Nodes of plain edges and vertices by their points.
+    nodes: FxHashMap<[u32; 16], u32>,
+    known_uses: FxHashMap<[u32; 5], u32>,
+    known_ends: FxHashMap<[u32; 55], u32>,
+    known: FxHashMap<[u32; 12], u32>,
+}
+
+/// What was found of some patches.
+pub struct Found {
+    /// Of each the number of its border.
     pub numbers: Vec<u32>,
-    /// Which vertices of a patch's ring take part in an edge, vertex or plain points: lists one behind the other.
+    /// Which vertices of a patch's ring take part in an edge, vertex or plain points: lists one behind the other, to be appended to the numbers of control
+    /// vertices.
     pub places: Vec<u32>,
-    /// How many different plans of edges there are.
-    pub edge_plans: usize,
-    /// How many different plans of vertices there are.
-    pub vertex_plans: usize,
 }
 
 /// A part's edges: which line it is, whether the part has a half of it, and the corner of the face that the line begins with.
@@ -97,78 +107,74 @@ fn points(topology: &Topology, part: Part, turn: u32) -> [Option<Point>; 4] {
 }
 
 impl Borders {
-    /// Finds the borders of irregular patches, whose plans are packed, and packs those of edges and vertices.
-    pub fn new(
+    /// Finds the borders of some irregular patches of a pass, whose plans are in its store, and packs the plans of edges and vertices that they lack.
+    pub fn find(
+        &mut self,
         given: Given<'_>,
-        packed: &mut PackedPlans,
+        slots: &[u32],
+        store: &mut Store,
         options: PlanOptions,
         database: &Database,
-    ) -> Result<Borders> {
+    ) -> Result<Found> {
         let Given {
             topology,
             smooth,
             patches,
-            plans,
+            agreed,
         } = given;
-        let agreed = agreed_edges(topology, smooth, patches, plans, packed);
         let is_settled = |edge: u32| {
             let ends = topology.edge(edge).vertices;
             agreed[edge as usize] || ends.iter().all(|&vertex| is_plain(smooth, vertex))
         };
-        let lines = patches.records.iter().flat_map(|record| {
+        let records = || slots.iter().map(|&slot| &patches.records[slot as usize]);
+        let lines = records().flat_map(|record| {
             let lines = lines(topology, record.part, record.turn(topology));
             lines.into_iter().map(|(line, ..)| line)
         });
         let lines = lines.filter(|&line| !matches!(line, Line::Edge(edge) if is_settled(edge)));
-        let lines = Shared::new(topology, smooth, lines, packed, options, database)?;
-        let vertices = patches.records.iter().flat_map(|record| {
+        let lines = Shared::new(topology, smooth, lines, store, options, database)?;
+        let vertices = records().flat_map(|record| {
             let points = points(topology, record.part, record.turn(topology));
             points.into_iter().flatten()
         });
         let vertices = vertices
             .filter(|&point| !matches!(point, Point::Vertex(vertex) if is_plain(smooth, vertex)));
-        let vertices = Shared::new(topology, smooth, vertices, packed, options, database)?;
+        let vertices = Shared::new(topology, smooth, vertices, store, options, database)?;
         let mut builder = Builder {
             topology,
             smooth,
-            plans,
-            agreed: &agreed,
+            agreed,
             in_ring: vec![u16::MAX; topology.vertex_count()],
             stars: FxHashMap::default(),
             long_rings: LongRings::default(),
-            strips: FxHashMap::default(),
             lines: &lines,
             vertices: &vertices,
-            packed,
-            lists: FxHashMap::default(),
-            nodes: FxHashMap::default(),
-            uses: FxHashMap::default(),
-            ends: FxHashMap::default(),
-            borders: FxHashMap::default(),
-            found: Borders {
-                edge_plans: lines.plans.len(),
-                vertex_plans: vertices.plans.len(),
-                ..Borders::default()
-            },
+            store,
+            borders: self,
+            first_place: patches.pass.controls.len() as u32,
+            places: Vec::new(),
         };
         let mut smooth_borders = FxHashMap::default();
-        for patch in patches.iter() {
+        let mut numbers = Vec::with_capacity(slots.len());
+        for &slot in slots {
+            let patch = patches.get(slot);
             let looks = patch.record.is_smooth.then(|| builder.looks(patch));
             let known = looks.and_then(|looks| smooth_borders.get(&looks));
             let number = match known {
                 Some(&known) => known,
                 None => {
                     let border = builder.border(patch)?;
-                    let records = &mut builder.found.records;
-                    numbered(&mut builder.borders, records, border)
+                    let Borders { known, records, .. } = &mut *builder.borders;
+                    numbered(known, records, border)
                 }
             };
             if let Some(looks) = looks {
                 smooth_borders.insert(looks, number);
             }
-            builder.found.numbers.push(number);
+            numbers.push(number);
         }
-        Ok(builder.found)
+        let places = builder.places;
+        Ok(Found { numbers, places })
     }
 }
 
@@ -176,11 +182,7 @@ impl Borders {
 struct Builder<'a> {
     topology: &'a Topology,
     smooth: &'a SmoothQuads<'a>,
-    /// The plans of the insides.
-    plans: &'a [&'a Plan],
     agreed: &'a [bool],
-    /// Roots of the trees of agreed edges, by plan, edge, whether the patch is mirrored, and whether the edge is flipped.
-    strips: FxHashMap<(u32, u32, bool, bool), u32>,
     lines: &'a Shared,
     vertices: &'a Shared,
     /// By vertex, where it stands in the ring of the patch at hand, if it does.
@@ -188,15 +190,11 @@ struct Builder<'a> {
     /// The rings of points that have none of their own.
     stars: FxHashMap<usize, Rc<Ring>>,
     long_rings: LongRings,
-    packed: &'a mut PackedPlans,
-    /// Where lists of places begin.
-    lists: FxHashMap<List, u32>,
-    /// Nodes of plain edges and vertices by their points.
-    nodes: FxHashMap<[u32; 16], u32>,
-    uses: FxHashMap<[u32; 5], u32>,
-    ends: FxHashMap<[u32; 55], u32>,
-    borders: FxHashMap<[u32; 12], u32>,
-    found: Borders,
+    store: &'a mut Store,
+    borders: &'a mut Borders,
+    /// Where the lists of places will begin.
+    first_place: u32,
+    places: Vec<u32>,
 }
 
 /// The number of a record, which is appended if it is not known.
@@ -314,7 +312,7 @@ impl Builder<'_> {
         let mut counts = [[0; LEVELS]; USES];
         let [inside @ .., _] = self.plan(&mut uses[0], patch.record.plan);
         counts[0] = inside;
-        let nearby = self.packed.nearby[patch.record.plan as usize];
+        let nearby = self.store.packed.nearby[patch.record.plan as usize];
         let mut places = List::new();
         let mut in_ring = std::mem::take(&mut self.in_ring);
         for (place, &vertex) in (0..).zip(patch.vertices) {
@@ -345,8 +343,7 @@ impl Builder<'_> {
                     let flipped = 2 * (flags & abi::USE_FLIPPED);
                     uses[number].flags = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
                     uses[number].ring = self.places(ring, &plain);
-                    let plan = self.lines.first + known.plan;
-                    let found = self.plan(&mut uses[number], plan);
+                    let found = self.plan(&mut uses[number], known.plan);
                     // Half of an edge needs what is one level deeper in the whole.
                     let deeper = usize::from(flags & HALVES != 0);
                     counts[number] = std::array::from_fn(|level| found[level + deeper]);
@@ -374,14 +371,14 @@ impl Builder<'_> {
                     let ring = known.ring.as_deref().or(star.as_deref());
                     let ring = ring.expect("it is kept, or was just found");
                     let local = ring.faces.iter().position(|&face| face == part.face);
-                    let (sides, planes) = self.vertices.plans[known.plan as usize].vertex_sides();
+                    let (sides, planes) = self.store.entry(known.plan).vertex_sides();
                     let side = match point {
                         Point::Vertex(_) => sides[local.expect("the face has the vertex")],
                         Point::Centre(_) => sides[0],
                     };
                     uses[number].flags = side_flags(side, planes > 1);
                     uses[number].ring = self.places(ring, &plain);
-                    self.plan(&mut uses[number], self.vertices.first + known.plan);
+                    self.plan(&mut uses[number], known.plan);
                     uses[number].root = nearby[patch.corner(corner) as usize];
                     // Position and normal.
                     counts[number] = [2; LEVELS];
@@ -402,11 +399,13 @@ impl Builder<'_> {
         self.in_ring = in_ring;
         let plain_count = places.len() as u32;
         let ends = ends(plain_count, &counts)?;
+        let plain = self.list(patch.vertices.len(), &places);
+        let borders = &mut *self.borders;
         Ok(abi::Border {
-            uses: uses.map(|used| numbered(&mut self.uses, &mut self.found.uses, used)),
-            plain: self.list(patch.vertices.len(), &places),
+            uses: uses.map(|used| numbered(&mut borders.known_uses, &mut borders.uses, used)),
+            plain,
             plain_count,
-            ends: numbered(&mut self.ends, &mut self.found.ends, ends),
+            ends: numbered(&mut borders.known_ends, &mut borders.ends, ends),
         })
     }
 
@@ -426,14 +425,15 @@ impl Builder<'_> {
     /// The root of the tree of an edge that is evaluated with the points of an inside's plan.
     fn strip(&mut self, patch: Irregular<'_>, edge: u32, flipped: bool) -> u32 {
         let (number, mirrored) = (patch.record.plan, patch.record.mirrored);
-        let plan = self.plans[number as usize];
-        let packed = &mut *self.packed;
+        let store = &mut *self.store;
         let push = || {
-            let strip = patch.strip(plan, edge);
+            let strip = patch.strip(store.plan(number), edge);
             let strip = strip.expect("faces agree on edges along which they have cells");
-            packed.push_strip(plan, &strip.turned(mirrored, flipped))
+            let turned = strip.turned(mirrored, flipped);
+            store.push_strip(number, &turned)
         };
         *self
+            .borders
             .strips
             .entry((number, edge, mirrored, flipped))
             .or_insert_with(push)
@@ -442,7 +442,7 @@ impl Builder<'_> {
     /// Which side of the line the face is on, and whether it runs the other way.
     fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: u32) -> u32 {
         let Line::Edge(_) = line else { return 0 };
-        let sides = self.lines.plans[plan as usize].edge_sides();
+        let sides = self.store.entry(plan).edge_sides();
         let local = |&side: &u32| ring.faces[side as usize] == face;
         let side = sides.iter().position(local).unwrap_or(0) as u32;
         let creased = if sides.len() > 1 { abi::USE_CREASED } else { 0 };
@@ -452,7 +452,7 @@ impl Builder<'_> {
 
     /// Gives a use its plan; tells how many stencils each level needs.
     fn plan(&self, used: &mut abi::Use, plan: u32) -> [u32; LEVELS + 1] {
-        let header = &self.packed.headers[plan as usize];
+        let header = &self.store.packed.headers[plan as usize];
         (used.size, used.rows, used.root) = (header.ring_size, header.rows, header.root);
         header.counts
     }
@@ -466,22 +466,25 @@ impl Builder<'_> {
 
     /// Where a list of places in a patch's ring of this size begins.
     fn list(&mut self, ring: usize, places: &[u32]) -> u32 {
-        let all = &mut self.found.places;
+        let (all, first) = (&mut self.places, self.first_place);
         let mut words = Vec::new();
         places::push(&mut words, ring, places.iter().copied());
         *self
+            .borders
             .lists
             .entry(List::from_vec(words))
             .or_insert_with_key(|words: &List| {
+                let start = first + all.len() as u32;
                 all.extend_from_slice(words);
-                (all.len() - words.len()) as u32
+                start
             })
     }
 
     /// The node of a B-spline of plain points.
     fn plain_node(&mut self, points: [u32; 16]) -> u32 {
-        let packed = &mut *self.packed;
+        let packed = &mut self.store.packed;
         *self
+            .borders
             .nodes
             .entry(points)
             .or_insert_with(|| packed.push_bspline(&points))

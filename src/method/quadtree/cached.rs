@@ -33,6 +33,7 @@ struct Needed {
 }
 
 /// What a patch needs, and where it looks for it.
+#[derive(Default)]
 struct PatchPoints {
     needed: Vec<Needed>,
     /// Where the points of each use begin among `places`.
@@ -66,7 +67,10 @@ pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
         .collect();
     let points: Vec<PatchPoints> = all
         .par_iter()
-        .map(|&(_, pass, number)| Patch::new(pass, number).points(deepest))
+        .map(|&(_, pass, number)| match pass.is_vacant(number) {
+            true => PatchPoints::default(),
+            false => Patch::new(pass, number).points(deepest),
+        })
         .collect();
     let (owned, numbers) = shared(prepared, &all, &points);
     let mut made = CachedPoints {

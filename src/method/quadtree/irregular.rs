@@ -1,14 +1,14 @@
 //! Patches that need plans.
 
-use crate::abi;
 use crate::mesh::topology::Topology;
 use crate::method::Pass;
 use crate::method::patches::Part;
 use crate::method::quadtree::places::{self, place_at};
 use crate::plan::{Plan, Strip};
+use crate::tessellation::Domain;
 
 /// What an irregular patch is, apart from its ring.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Record {
     pub part: Part,
     /// The number of its plan.
@@ -26,9 +26,15 @@ pub struct Record {
 /// The irregular patches of a pass. A patch's control vertices are its ring and, behind that, the order in which stencils of the inside are summed: places
 /// in the ring, by the vertices' numbers in the mesh. So faces add what they share in the same order, whatever else there is in their rings.
 pub struct Irregulars<'a> {
+    /// By patch.
     pub records: &'a [Record],
+    /// By face, the patch of a quad whose ring is short; [`NONE`] of others.
+    pub of_faces: &'a [u32],
     pub pass: &'a Pass,
 }
+
+/// Instead of a patch: there is none.
+pub const NONE: u32 = u32::MAX;
 
 /// An irregular patch.
 #[derive(Clone, Copy)]
@@ -68,9 +74,12 @@ impl<'a> Irregulars<'a> {
         }
     }
 
-    /// Every patch.
-    pub fn iter(&self) -> impl Iterator<Item = Irregular<'a>> {
-        (0..self.records.len() as u32).map(|number| self.get(number))
+    /// The patch of a face that is a quad with a short ring: one of which each invocation of the control shader can have a vertex.
+    pub fn of_face(&self, face: u32) -> Option<u32> {
+        self.of_faces
+            .get(face as usize)
+            .copied()
+            .filter(|&patch| patch != NONE)
     }
 }
 
@@ -93,11 +102,6 @@ impl Irregular<'_> {
             }
         }
         None
-    }
-
-    /// Whether its ring is one that one invocation of the control shader can have a vertex of each.
-    pub fn is_short(&self) -> bool {
-        self.vertices.len() <= abi::CONTROL_INVOCATIONS as usize
     }
 
     /// The corner of the quad at which the patch begins.
@@ -134,6 +138,21 @@ impl Irregular<'_> {
 }
 
 impl Record {
+    /// Of a slot without a patch.
+    pub const VACANT: Record = Record {
+        part: Part {
+            domain: Domain::Quads,
+            face: 0,
+            corner: 0,
+            ptex: 0,
+        },
+        plan: 0,
+        ring_size: 0,
+        start: 0,
+        mirrored: false,
+        is_smooth: false,
+    };
+
     /// The corner of the quad at which the patch begins.
     pub fn turn(&self, topology: &Topology) -> u32 {
         match topology.face(self.part.face).len() {

@@ -2,15 +2,16 @@
 
 use std::collections::VecDeque;
 use std::rc::Rc;
-use std::sync::Arc;
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
-use crate::plan::database::{Entry, Kind};
-use crate::plan::{Configuration, Database, PackedPlans, PlanOptions, Ring, SmoothQuads};
+use crate::method::quadtree::configurations::Configurations;
+use crate::method::quadtree::store::Store;
+use crate::plan::database::Kind;
+use crate::plan::{Database, PlanOptions, Ring, SmoothQuads};
 
 /// An edge of a patch that has a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -101,44 +102,9 @@ impl Subject for Point {
     }
 }
 
-/// Configurations that plans are wanted for, each once, by numbers of their own.
-#[derive(Default)]
-pub struct Wanted(FxHashMap<(Kind, Configuration), u32>);
-
-impl Wanted {
-    /// The number of a configuration.
-    pub fn number(&mut self, kind: Kind, configuration: Configuration) -> u32 {
-        let next = self.0.len() as u32;
-        *self.0.entry((kind, configuration)).or_insert(next)
-    }
-
-    /// The plans, by these numbers.
-    ///
-    /// # Errors
-    /// As [`Database::plans`].
-    pub fn plans(self, options: PlanOptions, database: &Database) -> Result<Vec<Arc<Entry>>> {
-        let mut wanted: Vec<(Kind, u32, Configuration)> = self
-            .0
-            .into_iter()
-            .map(|((kind, configuration), number)| (kind, number, configuration))
-            .collect();
-        wanted.sort_unstable_by_key(|&(kind, number, _)| (kind, number));
-        let mut plans: Vec<Option<Arc<Entry>>> = vec![None; wanted.len()];
-        for own in wanted.chunk_by(|one, other| one.0 == other.0) {
-            let configurations = own.iter().map(|(.., configuration)| configuration);
-            let configurations: Vec<&Configuration> = configurations.collect();
-            let found = database.plans(own[0].0, options, &configurations)?;
-            for (&(_, number, _), (_, entry)) in own.iter().zip(found) {
-                plans[number as usize] = Some(entry);
-            }
-        }
-        Ok(plans.into_iter().flatten().collect())
-    }
-}
-
 /// A subject's plan and ring.
 pub struct Known {
-    /// The number of its plan.
+    /// The number of its plan in the store.
     pub plan: u32,
     /// Its ring, which is not kept of what looks alike at first sight, and where it is long: around poles and n-gons rings take the square of these.
     pub ring: Option<Box<Ring>>,
@@ -152,9 +118,6 @@ pub struct Shared {
     known: Vec<Known>,
     /// Of each subject, by its number, where it stands there.
     places: Vec<u32>,
-    pub plans: Vec<Arc<Entry>>,
-    /// The number of the first among all packed plans.
-    pub first: u32,
 }
 
 impl Shared {
@@ -162,7 +125,7 @@ impl Shared {
         topology: &Topology,
         smooth: &SmoothQuads<'_>,
         subjects: impl Iterator<Item = S>,
-        packed: &mut PackedPlans,
+        store: &mut Store,
         options: PlanOptions,
         database: &Database,
     ) -> Result<Shared> {
@@ -183,7 +146,7 @@ impl Shared {
             .par_iter()
             .map(|subject| subject.looks(smooth))
             .collect();
-        let mut wanted = Wanted::default();
+        let mut wanted = Configurations::default();
         let mut plan_of_looks = FxHashMap::default();
         let mut known = Vec::with_capacity(all.len());
         // What rings tell is there as long as they are not known to be alike: around poles and in n-gons it is much.
@@ -207,16 +170,13 @@ impl Shared {
                 known.push(Known { plan, ring });
             }
         }
-        let plans = wanted.plans(options, database)?;
-        let first = packed.headers.len() as u32;
-        for plan in &plans {
-            packed.push(plan.plan())?;
+        let numbers = store.plans(wanted, options, database)?;
+        for known in &mut known {
+            known.plan = numbers[known.plan as usize];
         }
         Ok(Shared {
             known,
             places,
-            plans,
-            first,
         })
     }
 

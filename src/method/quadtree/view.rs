@@ -79,3 +79,28 @@ pub(super) fn ends_of(ends: &abi::Ends, level: usize) -> [u32; abi::USES as usiz
     let words = &ends.levels[level];
     std::array::from_fn(|number| words[number / 2] >> (16 * (number % 2)) & 0xffff)
 }
+
+/// A number for each level.
+pub(super) type Levels<T> = [T; abi::HIGHEST_LEVEL as usize + 1];
+
+/// The points of a patch's slot at each level, and the products of a weight and a vertex that these take. Of a corner's two points one is a normal, by two
+/// tangents.
+pub(super) fn sums(
+    border: &abi::Border,
+    uses: &[abi::Use],
+    ends: &[abi::Ends],
+) -> (Levels<u32>, Levels<u64>) {
+    let mut sums: (Levels<u32>, Levels<u64>) = Default::default();
+    for level in 0..sums.0.len() {
+        let mut start = abi::USES + border.plain_count;
+        let ends = ends_of(&ends[border.ends as usize], level);
+        for (number, end) in ends.into_iter().enumerate() {
+            let stencils = end - std::mem::replace(&mut start, end);
+            let tangents = u32::from(number >= 5 && stencils > 0);
+            let size = uses[border.uses[number] as usize].size;
+            sums.1[level] += u64::from(size) * u64::from(stencils + tangents);
+        }
+        sums.0[level] = start;
+    }
+    sums
+}

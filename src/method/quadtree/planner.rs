@@ -1,0 +1,500 @@
+//! Plans faces into passes: all of them at first, and some of them again when the mesh is edited.
+//!
+//! A patch keeps its slot, which is its number in its pass, as long as its face is drawn with the same shaders. What leaves a slot leaves it vacant, for whoever
+//! comes next. Plans and borders only ever grow ([`Planned`]); numbers of control vertices that nobody uses any more are taken again.
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::abi;
+use crate::error::Result;
+use crate::mesh::Model;
+use crate::mesh::topology::Topology;
+use crate::method::outline::sides;
+use crate::method::patches::Part;
+use crate::method::quadtree::agreement::{agree, agreed_edges};
+use crate::method::quadtree::border::Given;
+use crate::method::quadtree::bounded;
+use crate::method::quadtree::configurations::Configurations;
+use crate::method::quadtree::irregular::{Irregulars, NONE, Record, order, push_ring};
+use crate::method::quadtree::places;
+use crate::method::quadtree::planned::Planned;
+use crate::method::quadtree::surroundings::{Found, Surroundings, found};
+use crate::method::{Pass, PassChange};
+use crate::plan::database::Kind;
+use crate::plan::{Database, PlanOptions, Ring, SmoothQuads};
+
+/// The passes, in their order: regular patches, patches with plans and short rings, patches with plans and long rings.
+pub const PASSES: usize = 3;
+/// The pass of regular patches.
+const REGULAR: usize = 0;
+/// That of patches with short rings: each invocation of the control shader can have a vertex of theirs.
+const SHORT: usize = 1;
+const LONG: usize = 2;
+/// So many parts are on their way at a time.
+const AT_A_TIME: usize = 1 << 13;
+/// So many are few.
+const FEW: usize = 1 << 6;
+
+/// Where the patch of a ptex face is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Place {
+    pass: usize,
+    slot: u32,
+}
+
+/// See the top of this file.
+pub struct Planner {
+    options: PlanOptions,
+    planned: [Planned; 2],
+    /// By face, see [`Irregulars::of_faces`].
+    of_faces: Vec<u32>,
+    /// By edge, see [`Given::agreed`].
+    agreed: Vec<bool>,
+    /// By ptex face.
+    places: Vec<Option<Place>>,
+    vacant: [Vec<u32>; PASSES],
+    /// Where numbers of control vertices stand that nobody uses, by how many.
+    free: [FxHashMap<u32, Vec<u32>>; PASSES],
+    /// Whether passes have vacant slots to spare.
+    spares: bool,
+}
+
+/// What is to be planned.
+pub struct Wanted<'a> {
+    /// The faces that may have changed; all of them at first.
+    pub faces: &'a [u32],
+    /// The parts of those that are drawn.
+    pub parts: &'a [Part],
+    /// The ptex faces that are not drawn any more.
+    pub gone: &'a [u32],
+}
+
+/// Patches on their way to a pass, and the different configurations that they have.
+#[derive(Default)]
+struct Run {
+    slots: Vec<u32>,
+    configurations: Configurations,
+    /// Those of smooth rings, by their keys.
+    smooth: FxHashMap<u32, u32>,
+}
+
+/// What can be taken back, and what is let go at the end.
+#[derive(Default)]
+struct Log {
+    /// What was in slots before, in the order in which they were changed.
+    before: Vec<Before>,
+    /// Numbers of control vertices: pass, start, count.
+    freed: Vec<(usize, u32, u32)>,
+    /// By pass, where numbers of control vertices were written below the end of the list.
+    written: [Vec<std::ops::Range<u32>>; PASSES],
+}
+
+/// What was in a slot: its patch, texture coordinates and sides.
+struct Before {
+    place: Place,
+    patch: abi::Patch,
+    texture: [[f32; 2]; 4],
+    sides: [u32; 4],
+}
+
+impl Log {
+    /// Takes down what is in a slot.
+    fn remember(&mut self, pass: &Pass, place: Place) {
+        let slot = place.slot as usize;
+        self.before.push(Before {
+            place,
+            patch: pass.patches[slot],
+            texture: pass.texture[slot],
+            sides: pass.sides.get(slot).copied().unwrap_or_default(),
+        });
+    }
+
+    /// Puts everything back, in passes that had so many slots.
+    fn take_back(self, passes: &mut [Pass], slots: &[usize]) {
+        for before in self.before.into_iter().rev() {
+            let (pass, slot) = (&mut passes[before.place.pass], before.place.slot as usize);
+            pass.patches[slot] = before.patch;
+            pass.texture[slot] = before.texture;
+            if let Some(sides) = pass.sides.get_mut(slot) {
+                *sides = before.sides;
+            }
+        }
+        for (pass, &slots) in passes.iter_mut().zip(slots) {
+            pass.patches.truncate(slots);
+            pass.texture.truncate(slots);
+            pass.sides.truncate(slots);
+        }
+    }
+}
+
+/// A patch that nothing is drawn of.
+const VACANT: abi::Patch = abi::Patch {
+    ptex: 0,
+    flags: abi::PATCH_VACANT,
+    controls: 0,
+    plan: 0,
+    valences: 0,
+};
+
+impl Planner {
+    pub fn new(options: PlanOptions) -> Planner {
+        Planner {
+            options,
+            planned: Default::default(),
+            of_faces: Vec::new(),
+            agreed: Vec::new(),
+            places: Vec::new(),
+            vacant: Default::default(),
+            free: Default::default(),
+            spares: false,
+        }
+    }
+
+    /// What the passes of patches with plans have beside their tables.
+    pub fn planned(&self) -> &[Planned; 2] {
+        &self.planned
+    }
+
+    /// Gives each pass vacant slots to spare, so that few edits make it longer.
+    pub fn spare(&mut self, passes: &mut [Pass]) {
+        self.spares = true;
+        for (number, pass) in passes.iter_mut().enumerate() {
+            self.extend(number, pass);
+        }
+    }
+
+    /// Plans faces. The passes are left as they were where that fails, and the planner is of no use then.
+    ///
+    /// # Errors
+    /// As [`Store::plans`](super::store::Store::plans) and [`Borders::find`](super::border::Borders::find).
+    pub fn plan(
+        &mut self,
+        passes: &mut [Pass],
+        model: &Model,
+        wanted: &Wanted<'_>,
+        database: &Database,
+    ) -> Result<Vec<PassChange>> {
+        let mut log = Log::default();
+        let ends: Vec<usize> = passes.iter().map(|pass| pass.controls.len()).collect();
+        let slots: Vec<usize> = passes.iter().map(|pass| pass.patches.len()).collect();
+        if let Err(error) = self.try_plan(passes, model, wanted, database, &mut log) {
+            log.take_back(passes, &slots);
+            return Err(error);
+        }
+        for (pass, start, count) in log.freed {
+            self.free[pass].entry(count).or_default().push(start);
+        }
+        let mut changes = self.finish(passes);
+        for (number, change) in changes.iter_mut().enumerate() {
+            let own = log
+                .before
+                .iter()
+                .filter(|before| before.place.pass == number);
+            change.patches(own.map(|before| before.place.slot).collect());
+            let appended = ends[number]..passes[number].controls.len();
+            change.controls(&log.written[number], appended);
+        }
+        Ok(changes)
+    }
+
+    fn try_plan(
+        &mut self,
+        passes: &mut [Pass],
+        model: &Model,
+        wanted: &Wanted<'_>,
+        database: &Database,
+        log: &mut Log,
+    ) -> Result<()> {
+        let topology = model.topology();
+        let smooth = SmoothQuads::new(topology);
+        self.of_faces.resize(topology.face_count(), NONE);
+        self.agreed.resize(topology.edge_count(), false);
+        self.places.resize(model.mesh().ptex_count(), None);
+        for &ptex in wanted.gone {
+            self.leave(passes, ptex, log);
+        }
+        let mut runs: [Run; 2] = Default::default();
+        let mut all = Vec::with_capacity(AT_A_TIME.min(wanted.parts.len()));
+        // Some parts are few enough whatever is around them.
+        let crowded = wanted.parts.len() > FEW && bounded::is_crowded(topology);
+        let mut rest = wanted.parts;
+        while !rest.is_empty() {
+            let parts;
+            (parts, rest) = rest.split_at(match crowded {
+                true => bounded::some(topology, rest, AT_A_TIME),
+                false => AT_A_TIME.min(rest.len()),
+            });
+            let found = parts.par_iter().map(|&part| found(model, &smooth, part));
+            found.collect_into_vec(&mut all);
+            for (&part, found) in parts.iter().zip(all.drain(..)) {
+                self.place(passes, topology, part, found, &mut runs, log);
+            }
+        }
+        drop(all);
+        for (number, run) in runs.into_iter().enumerate() {
+            self.plan_run(
+                number,
+                passes,
+                model,
+                &smooth,
+                wanted.faces,
+                run,
+                database,
+                log,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Gives a part its place, and its patch all but the border.
+    fn place(
+        &mut self,
+        passes: &mut [Pass],
+        topology: &Topology,
+        part: Part,
+        found: Found,
+        runs: &mut [Run; 2],
+        log: &mut Log,
+    ) {
+        let Found {
+            mut patch,
+            texture,
+            surroundings,
+        } = found;
+        let number = match &surroundings {
+            Surroundings::Regular(_) => REGULAR,
+            Surroundings::Irregular(ring)
+                if ring.vertices.len() > abi::CONTROL_INVOCATIONS as usize =>
+            {
+                LONG
+            }
+            _ => SHORT,
+        };
+        let slot = self.slot(passes, number, part.ptex, log);
+        let (place, pass) = (slot as usize, &mut passes[number]);
+        let mut controls = Vec::new();
+        match &surroundings {
+            Surroundings::Regular(vertices) => controls.extend_from_slice(vertices),
+            Surroundings::Smooth(_, ring) => {
+                let order = ring.order().iter().copied().map(u16::from);
+                push_ring(&mut controls, ring.vertices(), order);
+            }
+            Surroundings::Irregular(ring) => {
+                let vertices = &ring.vertices;
+                push_ring(&mut controls, vertices, order(vertices).into_iter());
+            }
+        }
+        patch.controls = self.keep(number, pass, &controls, log);
+        if let Some(own) = pass.sides.get_mut(place) {
+            *own = sides(topology, part, &patch);
+        }
+        pass.patches[place] = patch;
+        pass.texture[place] = texture;
+        if number == REGULAR {
+            return;
+        }
+        if number == SHORT && topology.face(part.face).len() == 4 {
+            self.of_faces[part.face as usize] = slot;
+        }
+        let record = runs[number - SHORT].record(topology, part, surroundings);
+        self.planned[number - SHORT].records[place] = record;
+        runs[number - SHORT].slots.push(slot);
+    }
+
+    /// Plans the patches of a run: their insides, and their edges and corners.
+    #[allow(clippy::too_many_arguments)] // What is planned, of what, and where it goes.
+    fn plan_run(
+        &mut self,
+        number: usize,
+        passes: &mut [Pass],
+        model: &Model,
+        smooth: &SmoothQuads<'_>,
+        faces: &[u32],
+        run: Run,
+        database: &Database,
+        log: &mut Log,
+    ) -> Result<()> {
+        let (topology, pass_number) = (model.topology(), SHORT + number);
+        let Run {
+            mut slots,
+            configurations,
+            ..
+        } = run;
+        let Planned {
+            store,
+            borders,
+            records,
+            inside_bytes,
+        } = &mut self.planned[number];
+        let numbers = store.plans(configurations, self.options, database)?;
+        *inside_bytes = store.packed.quadtree_bytes();
+        for &slot in &slots {
+            let record = &mut records[slot as usize];
+            record.plan = numbers[record.plan as usize];
+        }
+        let pass = &mut passes[pass_number];
+        let patches = Irregulars {
+            records,
+            of_faces: &self.of_faces,
+            pass,
+        };
+        if pass_number == SHORT {
+            let agreed = agreed_edges(topology, smooth, &patches, &slots, store);
+            agree(
+                topology,
+                faces,
+                &agreed,
+                &mut self.agreed,
+                &patches,
+                &mut slots,
+            );
+        }
+        let given = Given {
+            topology,
+            smooth,
+            patches: &patches,
+            agreed: &self.agreed,
+        };
+        let found = borders.find(given, &slots, store, self.options, database)?;
+        pass.controls.extend_from_slice(&found.places);
+        for (slot, border) in slots.into_iter().zip(found.numbers) {
+            let place = Place {
+                pass: pass_number,
+                slot,
+            };
+            if self.spares && pass.patches[slot as usize].plan != border {
+                log.remember(pass, place);
+            }
+            pass.patches[slot as usize].plan = border;
+        }
+        Ok(())
+    }
+
+    /// The slot of a ptex face in a pass: its own, or one that is vacant.
+    fn slot(&mut self, passes: &mut [Pass], number: usize, ptex: u32, log: &mut Log) -> u32 {
+        match self.places[ptex as usize] {
+            Some(place) if place.pass == number => {
+                self.let_go(passes, place, log);
+                return place.slot;
+            }
+            Some(_) => self.leave(passes, ptex, log),
+            None => {}
+        }
+        if self.vacant[number].is_empty() {
+            self.extend(number, &mut passes[number]);
+        }
+        let slot = self.vacant[number].pop();
+        let slot = slot.expect("a pass was just made longer");
+        let place = Place { pass: number, slot };
+        self.places[ptex as usize] = Some(place);
+        if self.spares {
+            log.remember(&passes[number], place);
+        }
+        slot
+    }
+
+    /// Makes the slot of a ptex face vacant.
+    fn leave(&mut self, passes: &mut [Pass], ptex: u32, log: &mut Log) {
+        let Some(place) = self.places[ptex as usize].take() else {
+            return;
+        };
+        self.let_go(passes, place, log);
+        passes[place.pass].patches[place.slot as usize] = VACANT;
+        self.vacant[place.pass].push(place.slot);
+    }
+
+    /// Takes down what a patch was, whose control vertices are somewhere else afterwards.
+    fn let_go(&mut self, passes: &[Pass], place: Place, log: &mut Log) {
+        let slot = place.slot as usize;
+        let patch = passes[place.pass].patches[slot];
+        let count = match place.pass {
+            REGULAR => 16,
+            pass => {
+                let record = &self.planned[pass - SHORT].records[slot];
+                let face = record.part.face as usize;
+                if self.of_faces[face] == place.slot && pass == SHORT {
+                    self.of_faces[face] = NONE;
+                }
+                let size = record.ring_size as usize;
+                (size + places::words(size, size)) as u32
+            }
+        };
+        log.freed.push((place.pass, patch.controls, count));
+        log.remember(&passes[place.pass], place);
+    }
+
+    /// Where numbers of control vertices are kept: where there were as many that nobody uses, or at the end.
+    fn keep(&mut self, number: usize, pass: &mut Pass, controls: &[u32], log: &mut Log) -> u32 {
+        let count = controls.len() as u32;
+        let free = self.free[number].get_mut(&count).and_then(Vec::pop);
+        let Some(start) = free else {
+            pass.controls.extend_from_slice(controls);
+            return pass.controls.len() as u32 - count;
+        };
+        pass.controls[start as usize..][..controls.len()].copy_from_slice(controls);
+        log.written[number].push(start..start + count);
+        start
+    }
+
+    /// Makes a pass longer by a slot, or, once there are slots to spare, by an eighth and some.
+    fn extend(&mut self, number: usize, pass: &mut Pass) {
+        let first = pass.patches.len();
+        let count = if self.spares { first / 8 + 64 } else { 1 };
+        let end = first + count;
+        pass.patches.resize(end, VACANT);
+        pass.texture.resize(end, Default::default());
+        if self.spares {
+            pass.sides.resize(end, [0; 4]);
+        }
+        if number > REGULAR {
+            let records = &mut self.planned[number - SHORT].records;
+            records.resize(end, Record::VACANT);
+        }
+        // The first is taken first.
+        self.vacant[number].extend((first as u32..end as u32).rev());
+    }
+
+    /// Brings the passes' tables up to their plans and borders.
+    fn finish(&mut self, passes: &mut [Pass]) -> Vec<PassChange> {
+        let mut changes = vec![PassChange::default(); passes.len()];
+        for (number, planned) in self.planned.iter_mut().enumerate() {
+            let change = &mut changes[SHORT + number];
+            planned.finish(&mut passes[SHORT + number], change);
+        }
+        changes
+    }
+}
+
+impl Run {
+    /// What a patch is; its plan is the number of its configuration in the run.
+    fn record(&mut self, topology: &Topology, part: Part, surroundings: Surroundings) -> Record {
+        let mut number =
+            |configuration| self.configurations.number(Kind::Inside, configuration);
+        match surroundings {
+            Surroundings::Regular(_) => unreachable!("it needs no plan"),
+            Surroundings::Smooth(start, ring) => {
+                let plan = self.smooth.entry(start.key).or_insert_with(|| {
+                    let ring = Ring::of_quad(topology, part.face);
+                    number(ring.expect("a smooth face is a quad").configuration)
+                });
+                Record {
+                    part,
+                    plan: *plan,
+                    ring_size: ring.vertices().len() as u32,
+                    start: start.corner as u8,
+                    mirrored: start.mirrored,
+                    is_smooth: true,
+                }
+            }
+            Surroundings::Irregular(ring) => Record {
+                part,
+                plan: number(ring.configuration),
+                ring_size: ring.vertices.len() as u32,
+                start: ring.start as u8,
+                mirrored: ring.mirrored,
+                is_smooth: false,
+            },
+        }
+    }
+}

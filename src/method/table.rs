@@ -20,7 +20,6 @@ impl Table {
             stride: size_of::<T>() / 4,
         }
     }
-
 }
 
 impl Table {

@@ -325,6 +325,11 @@ mod tests {
             }
         }
         assert!(packed.view().row(5).is_none());
-        assert_eq!(from_pool.into_words(), packed.into_words());
+        let words = |packed: &PackedRows| {
+            let view = packed.view();
+            let sets: Vec<u32> = view.sets.iter().map(|weight| weight.to_bits()).collect();
+            (view.rows.to_vec(), sets, view.patterns.to_vec())
+        };
+        assert_eq!(words(&from_pool), words(&packed));
     }
 }

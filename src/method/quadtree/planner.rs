@@ -469,8 +469,7 @@ impl Planner {
 impl Run {
     /// What a patch is; its plan is the number of its configuration in the run.
     fn record(&mut self, topology: &Topology, part: Part, surroundings: Surroundings) -> Record {
-        let mut number =
-            |configuration| self.configurations.number(Kind::Inside, configuration);
+        let mut number = |configuration| self.configurations.number(Kind::Inside, configuration);
         match surroundings {
             Surroundings::Regular(_) => unreachable!("it needs no plan"),
             Surroundings::Smooth(start, ring) => {

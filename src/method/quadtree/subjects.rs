@@ -174,10 +174,7 @@ impl Shared {
         for known in &mut known {
             known.plan = numbers[known.plan as usize];
         }
-        Ok(Shared {
-            known,
-            places,
-        })
+        Ok(Shared { known, places })
     }
 
     /// What is known of a subject that has a plan.

@@ -188,8 +188,18 @@ const uint FRAME_EYES_SHIFT = 16u;
 const uint DECIDE_DISTANCE = 2u;
 // Flag of a `Decision`: by what is seen of edges.
 const uint DECIDE_SCREEN = 4u;
-// Flag of a `Decision`: patches outside of the picture are not drawn.
+// Flag of a `Decision`: patches outside of the picture are not drawn. The culling flags also tell, in a patch's decision, why it is not.
 const uint DECIDE_FRUSTUM = 8u;
+// Flag of a `Decision`: patches of which only the back is seen are not drawn.
+const uint DECIDE_BACK = 16u;
+// Flag of a `Decision`: patches between samples are not drawn.
+const uint DECIDE_SMALL = 32u;
+// Flag of a `Decision`: by how far normals turn.
+const uint DECIDE_CURVATURE = 64u;
+// Flag of a `Decision`: rows of samples in a pixel, and columns; four bits.
+const uint DECIDE_ROWS_SHIFT = 8u;
+// In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
+const uint HULL_SPLINE = 2147483648u;
 // Invocations of a workgroup of the shader that decides.
 const uint DECIDE_INVOCATIONS = 64u;
 // The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
@@ -223,9 +233,10 @@ const uint SHADING_DEPTH = 8u;
 // Shading: the height of the displacement.
 const uint SHADING_HEIGHT = 9u;
 
-// What the host decides about a patch before it is drawn.
+// What is decided about a patch before it is drawn.
 struct PatchDraw {
-    // Where its slot in the scratch ring begins, when the host gives slots.
+    // Where its slot in the scratch ring begins, when the host gives slots. Where the device decides, the `DECIDE_...` flag by which it is not drawn,
+    // or 0.
     uint slot;
     // Levels of its edges from corner i to corner i + 1, when it has levels of its own.
     vec4 edges;
@@ -287,7 +298,7 @@ struct PatchSides {
     // Where, in a list of lists, the control vertices of the side stand to which each of its edges belongs, behind their number: two of an edge of the mesh;
     // all of a face for what lies within it.
     uint sides[4];
-    // So many of its control vertices, the first, have the surface in their convex hull; 0 where none are known to.
+    // So many of its control vertices, the first, have the surface in their convex hull, and perhaps `HULL_SPLINE`; 0 where none are known to.
     uint hull;
 };
 
@@ -299,7 +310,7 @@ struct Decision {
     uint seen;
     // `DECIDE_...` flags.
     uint flags;
-    // By distance: up to where the level is full, in local units. By what is seen: pixels of a segment.
+    // By distance: up to where the level is full, in local units. By what is seen: pixels of a segment. By curvature: radians of a segment.
     float measure;
     // The greatest level.
     float level;
@@ -390,8 +401,8 @@ struct Bases {
     // Texture coordinates, four a patch.
     uint texture;
     // The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
-    // and the jobs that compute points; behind these, where the device decides, `PatchSides` and the lists that these point into.
-    uint own[13];
+    // and the jobs that compute points; behind these, where the device decides, `PatchSides`, the lists that these point into, and the faces around each vertex.
+    uint own[14];
     // How many patches there are.
     uint patches;
 };

@@ -32,8 +32,17 @@ layout(location = 3) patch in uint in_view;
 #define SEEN_VIEW in_view
 #endif
 
+// What the control shader decided.
+Levels decided_levels() {
+#ifdef TRIANGLES
+    return Levels(vec4(gl_TessLevelOuter[2], gl_TessLevelOuter[0], gl_TessLevelOuter[1], 0.0), gl_TessLevelInner[0]);
+#else
+    return Levels(vec4(gl_TessLevelOuter[1], gl_TessLevelOuter[2], gl_TessLevelOuter[3], gl_TessLevelOuter[0]), gl_TessLevelInner[0]);
+#endif
+}
+
 void main() {
     Patch record = patch_record(in_patch);
-    vec2 uv = shared_coordinates(record, patch_levels(in_patch, in_view, record), gl_TessCoord);
+    vec2 uv = shared_coordinates(record, decided_levels(), gl_TessCoord);
     write_vertex(record, in_patch, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));
 }

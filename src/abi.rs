@@ -201,8 +201,18 @@ constants! {
     DECIDE_DISTANCE = 2;
     /// Flag of a `Decision`: by what is seen of edges.
     DECIDE_SCREEN = 4;
-    /// Flag of a `Decision`: patches outside of the picture are not drawn.
+    /// Flag of a `Decision`: patches outside of the picture are not drawn. The culling flags also tell, in a patch's decision, why it is not.
     DECIDE_FRUSTUM = 8;
+    /// Flag of a `Decision`: patches of which only the back is seen are not drawn.
+    DECIDE_BACK = 16;
+    /// Flag of a `Decision`: patches between samples are not drawn.
+    DECIDE_SMALL = 32;
+    /// Flag of a `Decision`: by how far normals turn.
+    DECIDE_CURVATURE = 64;
+    /// Flag of a `Decision`: rows of samples in a pixel, and columns; four bits.
+    DECIDE_ROWS_SHIFT = 8;
+    /// In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
+    HULL_SPLINE = 0x8000_0000;
     /// Invocations of a workgroup of the shader that decides.
     DECIDE_INVOCATIONS = 64;
 
@@ -241,9 +251,10 @@ constants! {
 }
 
 structs! {
-    /// What the host decides about a patch before it is drawn.
+    /// What is decided about a patch before it is drawn.
     PatchDraw {
-        /// Where its slot in the scratch ring begins, when the host gives slots.
+        /// Where its slot in the scratch ring begins, when the host gives slots. Where the device decides, the `DECIDE_...` flag by which it is not drawn,
+        /// or 0.
         slot: u32,
         /// Levels of its edges from corner i to corner i + 1, when it has levels of its own.
         edges: [f32; 4],
@@ -305,7 +316,7 @@ structs! {
         /// Where, in a list of lists, the control vertices of the side stand to which each of its edges belongs, behind their number: two of an edge of the mesh;
         /// all of a face for what lies within it.
         sides: [u32; 4],
-        /// So many of its control vertices, the first, have the surface in their convex hull; 0 where none are known to.
+        /// So many of its control vertices, the first, have the surface in their convex hull, and perhaps `HULL_SPLINE`; 0 where none are known to.
         hull: u32,
     }
 
@@ -317,7 +328,7 @@ structs! {
         seen: u32,
         /// `DECIDE_...` flags.
         flags: u32,
-        /// By distance: up to where the level is full, in local units. By what is seen: pixels of a segment.
+        /// By distance: up to where the level is full, in local units. By what is seen: pixels of a segment. By curvature: radians of a segment.
         measure: f32,
         /// The greatest level.
         level: f32,
@@ -408,8 +419,8 @@ structs! {
         /// Texture coordinates, four a patch.
         texture: u32,
         /// The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
-        /// and the jobs that compute points; behind these, where the device decides, `PatchSides` and the lists that these point into.
-        own: [u32; 13],
+        /// and the jobs that compute points; behind these, where the device decides, `PatchSides`, the lists that these point into, and the faces around each vertex.
+        own: [u32; 14],
         /// How many patches there are.
         patches: u32,
     }

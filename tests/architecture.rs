@@ -380,7 +380,16 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 39] = [
+const NAMED: [(&str, &str, &str); 48] = [
+    ("src/bin/hullform/figures/list/trees.rs", "quadtree", PAPERS),
+    ("src/bin/hullform/figures/list/trees.rs", "gregory", PAPERS),
+    ("src/bin/hullform/figures/list/quadratic.rs", "qas", PAPERS),
+    ("src/bin/hullform/figures/list/quadratic.rs", "pn", PAPERS),
+    ("src/bin/hullform/figures/list/quadratic.rs", "flat", PAPERS),
+    ("src/bin/hullform/figures/list/tables.rs", "qas", PAPERS),
+    ("src/bin/hullform/figures/list/tables.rs", "bft", PAPERS),
+    ("src/bin/hullform/figures/list/tables.rs", "pn", PAPERS),
+    ("src/bin/hullform/figures/list/tables.rs", "phong", PAPERS),
     ("src/bin/hullform/plan.rs", "quadtree", PLANS),
     ("src/conformance/determinism.rs", "quadtree", RING),
     ("src/conformance/models.rs", "quadtree", SCHEME),
@@ -422,6 +431,7 @@ const NAMED: [(&str, &str, &str); 39] = [
     ("tests/view/steps.rs", "flat", WORDS),
 ];
 
+const PAPERS: &str = "the papers' figures are about them";
 const PLANS: &str = "it is about plans, which one method has";
 const RING: &str = "it is about the scratch ring, which one method uses";
 const NO_RING: &str = "it needs one that does not use the ring";

@@ -160,3 +160,41 @@ fn instances_are_one_draw_from_the_cache_and_one_each_in_the_ring() {
     assert_eq!(five[0], [draws, points, 5 * vertices]);
     assert_eq!(five[1], one[1].map(|count| 5 * count));
 }
+
+/// Of the same run twice the work is the same, and of another level nothing is known.
+#[test]
+fn a_saved_run_is_compared_row_by_row() {
+    let words = fails(&["bench", "builtin:cube", "--against", "/no/such/file"], 2);
+    assert!(words.contains("--against"), "{words}");
+    if !has_device() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let old = folder.path().join("old.json");
+    let old = old.to_str().expect("a plain path");
+    let bench = |levels: &'static str, more: &[&str]| {
+        let words = [
+            "bench",
+            "builtin:cube",
+            "--methods",
+            "flat",
+            "--frames",
+            "1",
+        ];
+        let output = run(&[&words[..], &["--levels", levels], more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        stdout(&output)
+    };
+    bench("2,4", &["--json", old]);
+    let text = bench("4,8", &["--against", old]);
+    assert!(text.ends_with("1 of 2 rows are in both\n"), "{text}");
+    assert!(
+        text.contains("x 1.00") && !text.contains("evaluations x"),
+        "{text}"
+    );
+    let words = fails(
+        &["bench", "builtin:cube", "--against", old, "--json", old],
+        2,
+    );
+    assert!(words.contains("what is read"), "{words}");
+}

@@ -57,6 +57,28 @@ fn written(folder: &tempfile::TempDir, model: &Model) -> PathBuf {
 }
 
 #[test]
+fn one_over_another_finds_what_that_has_and_leaves_it_as_it_is() {
+    let folder = folder();
+    let (known, new) = (model("ngons"), model("creased-torus"));
+    let path = written(&folder, &known);
+    let under = std::sync::Arc::new(open(&path));
+    let before = (state(&path), under.len());
+    let over = Database::over(under.clone());
+    assert_eq!(
+        tables(&prepare(&new, &over)),
+        tables(&prepare(&new, &Database::default()))
+    );
+    assert!(!over.is_empty());
+    assert_eq!((state(&path), under.len()), before);
+    // What the file has is read from it, and what the other has in memory is found there.
+    prepare(&known, &under);
+    let (held, own) = (under.len(), over.len());
+    prepare(&known, &over);
+    assert_eq!((under.len(), over.len()), (held, own));
+    assert_eq!(state(&path), before.0);
+}
+
+#[test]
 fn plans_that_were_kept_are_packed_to_the_same_bytes() {
     let folder = folder();
     for name in ["hull", "ngons", "creased-torus", "pole-40"] {

@@ -6,7 +6,7 @@
 #include "lib/interface.glsl"
 
 // The method's own tables, in this order.
-layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer NodeTable { Node nodes[]; };
+layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer NodeTable { uvec3 node_words[]; };
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer PointTable { uvec2 point_rows[]; };
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer StencilTable { uvec2 stencils[]; };
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer WeightTable { float weights[]; };
@@ -81,6 +81,12 @@ uvec4 node_row(uint number) {
     return uvec4(row.x & 0xffffu, row.x >> 16u, row.y & 0xffffu, row.y >> 16u);
 }
 
+// A node, fetched at once.
+Node node_at(uint number) {
+    uvec3 three = node_words[bases.own[0] + number];
+    return Node(three.x, three.y, uintBitsToFloat(three.z));
+}
+
 // Where a walk ends: in a B-spline. NODE_EXTRAORDINARY has no points: no tess coordinate inside gets there.
 struct Leaf {
     uint points;
@@ -119,26 +125,22 @@ Leaf find_leaf(uint root, vec2 from) {
     precise vec2 uv = from;
     // On a split plane the half nearer to the patch's middle is taken; at the middle itself the upper one.
     bvec2 upper = greaterThanEqual(uv, vec2(0.5));
-    uint number = bases.own[0] + root;
-    uint kind_word = nodes[number].kind;
-    uint points = nodes[number].points;
+    Node node = node_at(root);
     precise float scale = 1.0;
     // Bounded: helper invocations of fragment shaders may read zeros, which look like an internal node (seen on llvmpipe, Mesa 22.3.6).
-    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (kind_word & 15u) == NODE_INTERNAL; ++depth) {
+    for (uint depth = 0u; depth <= HIGHEST_LEVEL + 2u && (node.kind & 15u) == NODE_INTERNAL; ++depth) {
         bvec2 inner_tie = bvec2(scale > 1.0 && upper.x, scale > 1.0 && upper.y);
         bvec2 half_plane = mix(greaterThanEqual(uv, vec2(0.5)), greaterThan(uv, vec2(0.5)), inner_tie);
         uv = 2.0 * uv - vec2(half_plane);
         scale *= 2.0;
-        number = bases.own[0] + points + uint(half_plane.x) + 2u * uint(half_plane.y);
-        kind_word = nodes[number].kind;
-        points = nodes[number].points;
+        node = node_at(node.points + uint(half_plane.x) + 2u * uint(half_plane.y));
     }
-    uint kind = kind_word & 15u;
-    uint place = kind_word >> 4u & 15u;
-    uint base = kind_word >> NODE_BASE_SHIFT & 15u;
-    uint origin = kind_word >> NODE_ORIGIN_SHIFT & 15u;
-    Leaf leaf = Leaf(points, uv, scale, place, nodes[number].sharpness, base, origin, kind);
-    if (kind == NODE_TERMINAL) return terminal_leaf(leaf, kind_word >> 8u & 255u);
+    uint kind = node.kind & 15u;
+    uint place = node.kind >> 4u & 15u;
+    uint base = node.kind >> NODE_BASE_SHIFT & 15u;
+    uint origin = node.kind >> NODE_ORIGIN_SHIFT & 15u;
+    Leaf leaf = Leaf(node.points, uv, scale, place, node.sharpness, base, origin, kind);
+    if (kind == NODE_TERMINAL) return terminal_leaf(leaf, node.kind >> 8u & 255u);
     return leaf;
 }
 

@@ -334,8 +334,10 @@ vec3 job_point(uvec2 job) {
 #endif
 
 #ifdef STAGE_EVALUATION
-Row scratch_row(uint first, uint number, Basis u) {
-    uvec4 row = first + node_row(number);
+// Where the points of a leaf's row are. Corners have two points, and go the way of all others: machines that run invocations abreast would go both.
+uvec4 row_places(uint first, bool corner, uint number) { return first + (corner ? uvec4(0u, 1u, 1u, 1u) : node_row(number)); }
+
+Row scratch_row(uvec4 row, Basis u) {
     return bspline_row(u, point_at(row.x), point_at(row.y), point_at(row.z), point_at(row.w));
 }
 
@@ -356,24 +358,30 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint used = use_of(record, place.number);
     uint flags = uses[used].flags;
     uint first = use_points(slot, place.number);
-    if ((flags & USE_LIMIT) != 0u) {
-        precise vec3 vertex = point_at(first) + use_origin(slot, place.number);
-        return Point(vertex, point_at(first + 1u));
-    }
+    bool corner = (flags & USE_LIMIT) != 0u;
     bool exchanged = place.number == 0u && is_mirrored(record);
     vec2 local = exchanged ? uv.yx : place.number == 0u ? uv : vec2(place.number < 5u ? on_edge(flags, place.along) : 0.0, 0.0);
-    Leaf leaf = find_leaf(uses[used].root, local);
+    Leaf leaf = find_leaf(corner ? 0u : uses[used].root, local);
     Basis u, v;
     creased_bases(leaf.uv, leaf.edge, leaf.sharpness, u, v);
     if (leaf.kind == NODE_CURVE) v = CURVE;
     uint row = leaf.points + 16u * (flags >> USE_SIDE_SHIFT);
-    Surface surface = bspline_surface(v, leaf.scale, scratch_row(first, row, u), scratch_row(first, row + 4u, u),
-                              scratch_row(first, row + 8u, u), scratch_row(first, row + 12u, u));
+    uvec4 lowest = row_places(first, corner, row);
+    vec3 limit = point_at(lowest.x);
+    vec3 limit_normal = point_at(lowest.y);
+    Surface surface = bspline_surface(v, leaf.scale, bspline_row(u, limit, limit_normal, point_at(lowest.z), point_at(lowest.w)),
+                                      scratch_row(row_places(first, corner, row + 4u), u),
+                                      scratch_row(row_places(first, corner, row + 8u), u),
+                                      scratch_row(row_places(first, corner, row + 12u), u));
     surface = exchanged ? Surface(surface.position, surface.dv, surface.du) : turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;
-    vec3 base = leaf.base > 0u ? point_at(first + max(leaf.base, 1u) - 1u) : vec3(0.0);
-    vec3 origin = leaf.origin == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, leaf.origin > 0u ? use_of_corner(record, leaf.origin) : place.number);
+    vec3 base = leaf.base > 0u && !corner ? point_at(first + max(leaf.base, 1u) - 1u) : vec3(0.0);
+    uint origin_kind = corner ? 0u : leaf.origin;
+    uint origin_use = origin_kind > 0u ? use_of_corner(record, origin_kind) : place.number;
+    vec3 origin = origin_kind == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, origin_use);
+    precise vec3 vertex = limit + origin;
+    if (corner) return Point(vertex, limit_normal);
     precise vec3 position = (surface.position + base) + origin;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;

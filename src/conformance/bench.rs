@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::ops::{Deref, DerefMut};
 use std::rc::Rc;
 
+use crate::conformance::pictures;
 use crate::error::Result;
 use crate::gpu::{Cut, Fill, Shading, SurfaceOptions, Workaround};
 use crate::host::{self, Device, Encoding, Frame, OffscreenTarget, PipelineCache, Style};
@@ -95,6 +96,10 @@ impl Loaded<'_> {
     /// Draws everything at a cut into one picture: the alpha of its pixels, 0 where nothing is.
     pub fn picture(&mut self, cut: Cut) -> Result<Vec<u8>> {
         let pixels = self.loaded.picture(cut, Fill::Solid(Shading::Patch))?;
+        pictures::drew(|| pictures::Picture {
+            width: SIDE,
+            pixels: pixels.to_vec(),
+        });
         let alphas: Vec<u8> = pixels.iter().copied().skip(3).step_by(4).collect();
         self.saw(alphas.iter().filter(|&&alpha| alpha != 0).count());
         Ok(alphas)

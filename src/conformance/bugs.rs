@@ -20,3 +20,8 @@ pub mod fragment_primitive_id {
 pub mod patch_components {
     #![doc = include_str!("bugs/patch_components.md")]
 }
+
+/// What an invocation computed in its last turn of a loop is lost.
+pub mod loop_exits {
+    #![doc = include_str!("bugs/loop_exits.md")]
+}

@@ -119,6 +119,7 @@ pub struct Context {
     robust_bench: OnceCell<Bench>,
     device: OnceCell<Device>,
     memory_model_device: OnceCell<Device>,
+    full_device: OnceCell<Device>,
     wrong: Cell<bool>,
     seen: Seen,
 }
@@ -134,6 +135,7 @@ impl Context {
             robust_bench: OnceCell::new(),
             device: OnceCell::new(),
             memory_model_device: OnceCell::new(),
+            full_device: OnceCell::new(),
             wrong: Cell::new(false),
             seen: Seen::default(),
         }
@@ -168,6 +170,16 @@ impl Context {
                 ..Default::default()
             })
         })
+    }
+
+    /// The device with all that it has, but for what changes how shaders run: a logical device of its own.
+    pub fn full_device(&self) -> Result<&Device> {
+        let extra = ExtraFeatures {
+            robust_buffer_access: false,
+            vulkan_memory_model: false,
+            ..self.device()?.info().support.extra
+        };
+        opened(&self.full_device, || self.open(extra))
     }
 
     fn open(&self, extra: ExtraFeatures) -> Result<Device> {

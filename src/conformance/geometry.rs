@@ -1,6 +1,11 @@
-//! Group `geometry`: a geometry shader behind the tessellator.
+//! Group `geometry`: what comes behind the tessellator.
 //!
-//! One that hands triangles and lines on changes no pixel, and one with several invocations sees each triangle once in each. A seeded fault expects another patch.
+//! A geometry shader that hands triangles and lines on changes no pixel, and one with several invocations sees each triangle once in each. A seeded fault expects
+//! another patch. Distances, the sizes of points, and queries have files of their own.
+
+mod distances;
+mod points;
+mod queries;
 
 use crate::conformance::coordinates::TessLevels;
 use crate::conformance::modes::{Domain, Modes, Spacing, module, with_geometry_invocations};
@@ -11,7 +16,7 @@ use crate::error::Result;
 /// The group.
 pub const GROUP: Group = Group {
     name: "geometry",
-    about: "geometry shaders behind the tessellator",
+    about: "geometry shaders, distances, points and queries behind the tessellator",
     cases,
     model_cases: None,
 };
@@ -151,5 +156,8 @@ fn cases() -> Vec<Case> {
             }
         }
     }
+    cases.extend(distances::cases());
+    cases.extend(points::cases());
+    cases.extend(queries::cases());
     cases
 }

@@ -4,7 +4,7 @@
 //! here and a row of [`GROUPS`]. The suite runs its cases in worker processes ([`Runner`]), so that a driver's crash or hang ends one
 //! case and no more; and holds results to a list of what the driver is known to do wrong ([`Expectations`]).
 //!
-//! Raw groups (`coordinates`, `connectivity`, `winding`, `scale`, `draws`, `primitive_id`, `io`, `barriers`, `precision`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
+//! Raw groups (`coordinates`, `connectivity`, `winding`, `scale`, `draws`, `primitive_id`, `io`, `barriers`, `loops`, `precision`, `visibility`) have small shaders of their own in `glsl/conformance` and know nothing of subdivision:
 //! what they find is the driver's. The others draw our surfaces.
 //!
 //! What the suite found in drivers stands in [`bugs`].
@@ -28,10 +28,12 @@ mod geometry;
 mod io;
 mod limit;
 mod loads;
+mod loops;
 mod meshes;
 mod models;
 mod modes;
 mod opened;
+mod pictures;
 mod precision;
 mod primitive_id;
 mod program;
@@ -53,6 +55,7 @@ pub use case::{Case, Check, Finding, Group, LIMIT, Status};
 pub use context::{Context, Fault, FaultKind, Settings};
 pub use expectations::{Cases, Expectation, Expectations, Lists};
 pub use opened::Opened;
+pub use pictures::Picture;
 pub use program::own_program;
 pub use random::Random;
 pub use registry::{GROUPS, Registry, SMOKE};

@@ -1,18 +1,24 @@
 //! Draws with shaders of the suite's own, without any of the layers that our surfaces have.
 
+mod feedback;
+mod program;
 mod recorder;
-
-use std::borrow::Cow;
+mod secondary;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 
-use crate::conformance::modes::module;
+use crate::conformance::pictures;
 use crate::error::Result;
 use crate::gpu::{Buffer, failed};
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery, StorageSet};
 
+pub use feedback::Feedback;
+pub use program::{Assembly, Program, Raster};
 pub use recorder::{Event, Recorder, Scope};
+
+use program::Place;
+use secondary::Secondary;
 
 /// Stages that see the buffers and the push constants.
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -21,74 +27,6 @@ const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 
 /// The greatest push constants that the suite's shaders have.
 const CONSTANT_BYTES: u32 = 32;
-
-/// What becomes of the triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Raster {
-    /// Nothing.
-    Discard,
-    /// The patch's number as a colour.
-    Solid,
-    /// The same, only for those that face the viewer: counter-clockwise ones.
-    Front,
-    /// The same, without those that are culled.
-    Culled(vk::CullModeFlags, vk::FrontFace),
-}
-
-/// What a pipeline is made of. Words are those of modules.
-pub struct Program {
-    /// The vertex shader.
-    pub vertex: &'static [u32],
-    /// The control and the evaluation shader; without them there are no patches, but triangles.
-    pub tessellation: Option<[Cow<'static, [u32]>; 2]>,
-    /// The geometry shader, if there is one.
-    pub geometry: Option<Cow<'static, [u32]>>,
-    /// The fragment shader, where anything is drawn.
-    pub fragment: &'static [u32],
-    /// Control points a patch.
-    pub control_points: u32,
-    /// Constants 0, 1, ... of all shaders.
-    pub constants: Vec<u32>,
-    /// What becomes of the triangles.
-    pub raster: Raster,
-    /// Where the domain has its origin.
-    pub origin: vk::TessellationDomainOrigin,
-}
-
-impl Program {
-    /// Patches of one control point each, whose numbers are drawn.
-    pub fn new(
-        control: impl Into<Cow<'static, [u32]>>,
-        evaluation: impl Into<Cow<'static, [u32]>>,
-    ) -> Result<Program> {
-        Ok(Program {
-            vertex: module("patch.vert")?,
-            tessellation: Some([control.into(), evaluation.into()]),
-            geometry: None,
-            fragment: module("solid.frag")?,
-            control_points: 1,
-            constants: Vec::new(),
-            raster: Raster::Solid,
-            origin: vk::TessellationDomainOrigin::UPPER_LEFT,
-        })
-    }
-
-    /// The stages that it has, with their modules' words.
-    fn stages(&self) -> Vec<(vk::ShaderStageFlags, &[u32])> {
-        let mut stages: Vec<(vk::ShaderStageFlags, &[u32])> =
-            vec![(vk::ShaderStageFlags::VERTEX, self.vertex)];
-        if let Some([control, evaluation]) = &self.tessellation {
-            stages.push((vk::ShaderStageFlags::TESSELLATION_CONTROL, control));
-            stages.push((vk::ShaderStageFlags::TESSELLATION_EVALUATION, evaluation));
-        }
-        let geometry = self.geometry.iter();
-        stages.extend(geometry.map(|words| (vk::ShaderStageFlags::GEOMETRY, &**words)));
-        if self.raster != Raster::Discard {
-            stages.push((vk::ShaderStageFlags::FRAGMENT, self.fragment));
-        }
-        stages
-    }
-}
 
 /// Storage buffers at bindings 0, 1, ... that the host sees, a picture, and pipelines over them.
 pub struct Raw<'a> {
@@ -123,12 +61,15 @@ impl<'a> Raw<'a> {
     }
 
     fn make_buffer(&mut self, size: u64) -> Result<()> {
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+        let mut usage = vk::BufferUsageFlags::STORAGE_BUFFER
             | vk::BufferUsageFlags::INDEX_BUFFER
             | vk::BufferUsageFlags::INDIRECT_BUFFER;
+        if self.device.extra().transform_feedback {
+            usage |= vk::BufferUsageFlags::TRANSFORM_FEEDBACK_BUFFER_EXT;
+        }
         let (device, location) = (self.device.raw(), MemoryLocation::GpuToCpu);
         let allocator = &mut self.device.allocator();
-        // SAFETY: device and allocator belong together; the usage needs no feature.
+        // SAFETY: device and allocator belong together; the usage needs no feature but what the device was opened with.
         let buffer =
             unsafe { Buffer::new(device, allocator, "conformance", size, usage, location) };
         self.buffers.push(buffer?);
@@ -176,7 +117,9 @@ impl<'a> Raw<'a> {
         let bytes = self.target.read_pixels();
         let pixels = bytes.chunks_exact(4);
         let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], 0]);
-        pixels.map(word).collect()
+        let numbers: Vec<u32> = pixels.map(word).collect();
+        pictures::drew(|| pictures::of_numbers(self.target.area().width, &numbers));
+        numbers
     }
 
     /// Builds a pipeline, which lives as long as this.
@@ -192,86 +135,20 @@ impl<'a> Raw<'a> {
                 Err(code) => made = Err(failed("vkCreateShaderModule")(code)),
             }
         }
-        let pipeline = made.and_then(|()| self.assemble(program, &modules));
+        let place = Place {
+            device,
+            layout: self.layout,
+            render_pass: self.target.render_pass(),
+            samples: self.target.samples(),
+        };
+        // Parts that pipelines are linked from live as long as these.
+        let pipelines = &mut self.pipelines;
+        let made = made.and_then(|()| program.assemble(place, &modules, pipelines));
         for (_, module) in modules {
             // SAFETY: modules are not needed once the pipeline is there.
             unsafe { device.destroy_shader_module(module, None) };
         }
-        self.pipelines.extend(pipeline.as_ref().ok());
-        pipeline
-    }
-
-    fn assemble(
-        &self,
-        program: &Program,
-        modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
-    ) -> Result<vk::Pipeline> {
-        let constants: &[u8] = bytemuck::cast_slice(&program.constants);
-        let entry = |id: u32| {
-            vk::SpecializationMapEntry::default()
-                .constant_id(id)
-                .offset(4 * id)
-                .size(4)
-        };
-        let entries: Vec<_> = (0..program.constants.len() as u32).map(entry).collect();
-        let special = vk::SpecializationInfo::default()
-            .map_entries(&entries)
-            .data(constants);
-        let stage = |&(stage, module): &(vk::ShaderStageFlags, vk::ShaderModule)| {
-            vk::PipelineShaderStageCreateInfo::default()
-                .stage(stage)
-                .module(module)
-                .name(c"main")
-                .specialization_info(&special)
-        };
-        let stages: Vec<_> = modules.iter().map(stage).collect();
-        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let has_patches = program.tessellation.is_some();
-        let assembly =
-            vk::PipelineInputAssemblyStateCreateInfo::default().topology(if has_patches {
-                vk::PrimitiveTopology::PATCH_LIST
-            } else {
-                vk::PrimitiveTopology::TRIANGLE_LIST
-            });
-        let mut origin = vk::PipelineTessellationDomainOriginStateCreateInfo::default()
-            .domain_origin(program.origin);
-        let tessellation = vk::PipelineTessellationStateCreateInfo::default()
-            .patch_control_points(program.control_points)
-            .push_next(&mut origin);
-        let viewport = vk::PipelineViewportStateCreateInfo::default()
-            .viewport_count(1)
-            .scissor_count(1);
-        let rasterization = rasterization(program.raster);
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(self.target.samples());
-        let depth = vk::PipelineDepthStencilStateCreateInfo::default();
-        let colour = [vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA)];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colour);
-        let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
-        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
-        let info = vk::GraphicsPipelineCreateInfo::default()
-            .stages(&stages)
-            .vertex_input_state(&vertex_input)
-            .input_assembly_state(&assembly)
-            .viewport_state(&viewport)
-            .rasterization_state(&rasterization)
-            .multisample_state(&multisample)
-            .depth_stencil_state(&depth)
-            .color_blend_state(&blend)
-            .dynamic_state(&dynamic)
-            .layout(self.layout)
-            .render_pass(self.target.render_pass());
-        let info = if has_patches {
-            info.tessellation_state(&tessellation)
-        } else {
-            info
-        };
-        let (device, cache) = (self.device.raw(), vk::PipelineCache::null());
-        // SAFETY: everything that the info points to lives through the call and is of this device.
-        let made = unsafe { device.create_graphics_pipelines(cache, &[info], None) };
-        made.map(|pipelines| pipelines[0])
-            .map_err(|(_, code)| failed("vkCreateGraphicsPipelines")(code))
+        made
     }
 
     /// Builds a compute pipeline, which lives as long as this.
@@ -363,11 +240,44 @@ impl<'a> Raw<'a> {
         })
     }
 
+    /// The same with so many draws, each recorded into a secondary command buffer of its own.
+    pub fn submit_secondary(
+        &self,
+        count: usize,
+        draw: impl Fn(&Recorder<'_>, usize),
+    ) -> Result<()> {
+        let secondary = Secondary::new(self.device, count)?;
+        for (i, &cmd) in secondary.buffers.iter().enumerate() {
+            secondary.begin(cmd, self.target.render_pass())?;
+            // SAFETY: it is recording.
+            unsafe { self.target.cmd_set_view(cmd) };
+            draw(&self.recorder(cmd), i);
+            // SAFETY: as above.
+            unsafe { self.device.raw().end_command_buffer(cmd) }
+                .map_err(failed("vkEndCommandBuffer"))?;
+        }
+        // SAFETY: recording on the device that made everything; the secondary command buffers are complete, made for this pass, and live until
+        // the submission has been waited for.
+        self.device.submit(|cmd| unsafe {
+            self.target.begin_for_secondary(cmd, [0.0; 4]);
+            let device = self.device.raw();
+            device.cmd_execute_commands(cmd, &secondary.buffers);
+            self.target.end(cmd);
+            self.cmd_read_back(cmd);
+            self.target.cmd_copy_to_host(cmd);
+            Ok(())
+        })
+    }
+
     /// # Safety
     /// `cmd` is recording on this device, outside of a render pass.
     unsafe fn cmd_read_back(&self, cmd: vk::CommandBuffer) {
         let barrier = vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .src_access_mask(if self.device.extra().transform_feedback {
+                vk::AccessFlags::SHADER_WRITE | vk::AccessFlags::TRANSFORM_FEEDBACK_WRITE_EXT
+            } else {
+                vk::AccessFlags::SHADER_WRITE
+            })
             .dst_access_mask(vk::AccessFlags::HOST_READ);
         let stages = vk::PipelineStageFlags::ALL_GRAPHICS;
         let host = vk::PipelineStageFlags::HOST;
@@ -379,22 +289,6 @@ impl<'a> Raw<'a> {
                 .cmd_pipeline_barrier(cmd, stages, host, none, &[barrier], &[], &[])
         };
     }
-}
-
-fn rasterization(raster: Raster) -> vk::PipelineRasterizationStateCreateInfo<'static> {
-    let (cull, front) = match raster {
-        Raster::Discard | Raster::Solid => {
-            (vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE)
-        }
-        Raster::Front => (vk::CullModeFlags::BACK, vk::FrontFace::COUNTER_CLOCKWISE),
-        Raster::Culled(cull, front) => (cull, front),
-    };
-    vk::PipelineRasterizationStateCreateInfo::default()
-        .rasterizer_discard_enable(raster == Raster::Discard)
-        .polygon_mode(vk::PolygonMode::FILL)
-        .cull_mode(cull)
-        .front_face(front)
-        .line_width(1.0)
 }
 
 impl Drop for Raw<'_> {

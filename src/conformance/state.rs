@@ -1,4 +1,4 @@
-//! Group `state`: draws of one submission with pipelines of other domains, spacings, patch sizes, or without patches.
+//! Group `state`: draws of one submission with pipelines of other domains, spacings, patch sizes, or without patches; made and recorded in several ways.
 //!
 //! Each draw has a cell of the picture, and must leave there what it leaves when it is alone. A seeded fault compares with the next one's.
 
@@ -7,9 +7,10 @@ use std::collections::btree_map::Entry;
 
 use crate::conformance::modes::{Domain, Modes, Spacing, module};
 use crate::conformance::random::Random;
-use crate::conformance::raw::{Program, Raw};
+use crate::conformance::raw::{Assembly, Program, Raw, Recorder};
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
+use crate::gpu::ExtraFeatures;
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -77,7 +78,7 @@ impl State {
         }
     }
 
-    fn program(self) -> Result<Program> {
+    fn program(self, assembly: Assembly) -> Result<Program> {
         let State::Patches {
             domain,
             spacing,
@@ -89,6 +90,7 @@ impl State {
                 vertex: module("state.vert")?,
                 tessellation: None,
                 constants: vec![0],
+                assembly,
                 ..Program::new(none, none)?
             });
         };
@@ -98,6 +100,7 @@ impl State {
             vertex: module("state.vert")?,
             control_points: points,
             constants: vec![points],
+            assembly,
             ..Program::new(module("state.tesc")?, evaluation)?
         })
     }
@@ -112,34 +115,98 @@ const LEVEL: f32 = 3.5;
 /// What draws leave: of each the runs of the last stage, the points of a patch, and the pixels of its cell that are drawn.
 type Left = Vec<[u32; 3]>;
 
+/// How pipelines are made and draws recorded.
+#[derive(Clone, Copy)]
+struct Way {
+    name: &'static str,
+    assembly: Assembly,
+    /// Each draw in a secondary command buffer.
+    secondary: bool,
+    rule: &'static str,
+    /// What the device must have.
+    has: fn(&ExtraFeatures) -> bool,
+}
+
+const PLAIN: Way = Way {
+    name: "",
+    assembly: Assembly::Whole,
+    secondary: false,
+    rule: "a draw leaves what it leaves when it is alone, whatever pipelines were bound before",
+    has: |_| true,
+};
+
+const WAYS: [Way; 4] = [
+    Way {
+        name: "dynamic_points",
+        assembly: Assembly::DynamicPatchSize,
+        rule: "patches have as many control points as the draw says, not the pipeline",
+        has: |extra| extra.dynamic_patch_size,
+        ..PLAIN
+    },
+    Way {
+        name: "linked",
+        assembly: Assembly::Linked,
+        rule: "a pipeline that is linked from parts draws what one draws that was made at once",
+        has: |extra| extra.pipeline_libraries,
+        ..PLAIN
+    },
+    Way {
+        name: "optimised",
+        assembly: Assembly::Optimised,
+        rule: "the same when it is optimised as it is linked",
+        has: |extra| extra.pipeline_libraries,
+        ..PLAIN
+    },
+    Way {
+        name: "secondary",
+        secondary: true,
+        rule: "a draw in a secondary command buffer leaves what it leaves in the primary one",
+        ..PLAIN
+    },
+];
+
 /// Draws some of the states, each by its place among all of them.
-fn draw(context: &Context, states: &[State], which: &[usize]) -> Result<Left> {
-    let mut raw = Raw::new(context.device()?, &[8 * MOST as u64], SIDE)?;
+fn draw(context: &Context, way: Way, states: &[State], which: &[usize]) -> Result<Left> {
+    let device = match way.assembly {
+        Assembly::Whole => context.device()?,
+        _ => context.full_device()?,
+    };
+    let mut raw = Raw::new(device, &[8 * MOST as u64], SIDE)?;
     let mut pipelines = BTreeMap::new();
     for &place in which {
         let state = states[place];
         if let Entry::Vacant(entry) = pipelines.entry(state) {
-            entry.insert(raw.pipeline(&state.program()?)?);
+            entry.insert(raw.pipeline(&state.program(way.assembly)?)?);
         }
     }
-    raw.submit(None, |cmd| {
-        for &place in which {
-            let state = states[place];
-            let constants = Constants {
-                number: place as u32,
-                columns: COLUMNS,
-                level: LEVEL,
-            };
-            cmd.barrier();
-            cmd.bind(pipelines[&state], &constants);
-            cmd.draw(
-                state.points().max(1) * if state.points() == 0 { 6 } else { 1 },
-                1,
-                0,
-                0,
-            );
+    let record = |cmd: &Recorder<'_>, place: usize| {
+        let state = states[place];
+        let constants = Constants {
+            number: place as u32,
+            columns: COLUMNS,
+            level: LEVEL,
+        };
+        cmd.barrier();
+        cmd.bind(pipelines[&state], &constants);
+        if way.assembly == Assembly::DynamicPatchSize && state.points() > 0 {
+            cmd.patch_size(state.points());
         }
-    })?;
+        let vertices = if state.points() == 0 {
+            6
+        } else {
+            state.points()
+        };
+        cmd.draw(vertices, 1, 0, 0);
+    };
+    if way.secondary {
+        raw.submit_secondary(which.len(), |cmd, i| record(cmd, which[i]))?;
+    } else {
+        raw.submit(None, |cmd| {
+            for &place in which {
+                record(cmd, place);
+            }
+        })?;
+    }
     let (counts, pixels) = (raw.words(0), raw.pixels());
     context.saw(pixels.iter().filter(|&&pixel| pixel != 0).count() as u64);
     let cell = SIDE / COLUMNS;
@@ -160,12 +227,19 @@ fn draw(context: &Context, states: &[State], which: &[usize]) -> Result<Left> {
         .collect())
 }
 
-fn switches(context: &Context, states: &[State]) -> Result<Finding> {
+fn switches(context: &Context, way: Way, states: &[State]) -> Result<Finding> {
+    if !(way.has)(&context.device()?.info().support.extra) {
+        return Ok(Finding::skip(format!(
+            "the device has nothing for {}",
+            way.name
+        )));
+    }
     let mut check = Check::default();
     let all: Vec<usize> = (0..states.len()).collect();
-    let together = draw(context, states, &all)?;
+    let together = draw(context, way, states, &all)?;
     for (place, state) in states.iter().enumerate() {
-        let alone = draw(context, states, &[place])?;
+        // Alone it is as plain as can be.
+        let alone = draw(context, PLAIN, states, &[place])?;
         let shift = usize::from(context.is_wrong());
         let [found, right] = [together[(place + shift) % states.len()], alone[place]];
         // Shaders may run more often than once a vertex.
@@ -182,12 +256,10 @@ fn switches(context: &Context, states: &[State]) -> Result<Finding> {
 
 const SOURCE: &str = "Vulkan, Pipelines, Binding; Fundamentals, Queue Operation: draws are independent of those before";
 
-fn case(name: String, states: Vec<State>) -> Case {
-    let rule =
-        "a draw leaves what it leaves when it is alone, whatever pipelines were bound before";
+fn case(name: String, way: Way, states: Vec<State>) -> Case {
     let name = format!("state.{name}");
-    Case::new(name, rule, SOURCE, move |context| {
-        switches(context, &states)
+    Case::new(name, way.rule, SOURCE, move |context| {
+        switches(context, way, &states)
     })
 }
 
@@ -198,7 +270,7 @@ fn cases() -> Vec<Case> {
         // Both orders are in it.
         for &b in &all[i + 1..] {
             let name = format!("domains.{}-{}", a.name(), b.name());
-            cases.push(case(name, vec![a, b, a, b]));
+            cases.push(case(name, PLAIN, vec![a, b, a, b]));
         }
     }
     let sizes = [1, 2, 3, 4, 16, 31, 32].map(|points| State::Patches {
@@ -209,10 +281,10 @@ fn cases() -> Vec<Case> {
     for (i, &a) in sizes.iter().enumerate() {
         for &b in &sizes[i + 1..] {
             let name = format!("points.{}-{}", a.points(), b.points());
-            cases.push(case(name, vec![a, b, a, b]));
+            cases.push(case(name, PLAIN, vec![a, b, a, b]));
         }
         let name = format!("points.{}-none", a.points());
-        cases.push(case(name, vec![a, State::Triangles, a]));
+        cases.push(case(name, PLAIN, vec![a, State::Triangles, a]));
     }
     for number in 0..20 {
         let name = format!("mixed.{number}");
@@ -229,7 +301,11 @@ fn cases() -> Vec<Case> {
             },
         };
         let states: Vec<State> = (0..12).map(state).collect();
-        cases.push(case(name, states));
+        for way in WAYS {
+            let name = format!("{}.{number}", way.name);
+            cases.push(case(name, way, states.clone()));
+        }
+        cases.push(case(name, PLAIN, states));
     }
     cases
 }

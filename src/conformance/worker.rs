@@ -10,7 +10,7 @@ use std::io::{BufRead, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-use crate::conformance::{Context, Finding, Opened, Registry, Status};
+use crate::conformance::{Context, Finding, Opened, Picture, Registry, Status, pictures};
 
 /// Stands before every line that is meant for the runner.
 pub(super) const MARK: &str = "hullform-verify ";
@@ -61,13 +61,15 @@ pub(super) fn request(name: &str, run: u32) -> String {
     format!("{run} {name}\n")
 }
 
-/// Runs the cases that `input` names until it ends, and answers on `output`. When `input` ends in the middle of a case, the process
+/// Runs the cases that `input` names until it ends, and answers on `output`. What a case found that did not pass goes to `keep`, with its name and the pictures that it drew
+/// last. When `input` ends in the middle of a case, the process
 /// exits: the runner has gone, and a case that hangs shall not stay behind.
 pub fn work(
     context: &Context,
     registry: &Registry,
     input: impl BufRead + Send + 'static,
     mut output: impl Write,
+    mut keep: impl FnMut(&str, &Finding, &[Picture]),
 ) -> std::io::Result<()> {
     let (sender, requests) = mpsc::channel();
     std::thread::spawn(move || {
@@ -99,6 +101,10 @@ pub fn work(
             find_out(context, registry, name)
         }));
         let found = found.unwrap_or_else(|_| our_own(&said));
+        let drawn = pictures::take();
+        if !matches!(found.status, Status::Pass | Status::Skip) {
+            keep(name, &found, &drawn);
+        }
         let is_the_last = found.status.is_the_last();
         answer(Answer::End(found))?;
         if is_the_last {

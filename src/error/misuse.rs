@@ -121,6 +121,22 @@ pub enum Misuse {
         /// What was given.
         given: f32,
     },
+    /// Samples in standard places are in rows and columns of their own for 1, 2, 4 and 8 a pixel.
+    #[error(
+        "where {given} samples a pixel are is not known; decide without small patches, or with 1, 2, 4 or 8"
+    )]
+    Samples {
+        /// How many there are to be.
+        given: u32,
+    },
+    /// Levels go by one picture, and samples are in another.
+    #[error("levels go by a picture of {levels:?} pixels, and samples are in one of {samples:?}")]
+    Pictures {
+        /// By which levels go.
+        levels: [f32; 2],
+        /// In which samples are.
+        samples: [f32; 2],
+    },
     /// The draw list needs what the host decides about patches, and another list's is on the device, or none.
     #[error("what the host decides about this draw list's patches was not written last")]
     NotWritten,

@@ -1,10 +1,11 @@
 //! What the device decides about patches in each frame: their levels, and which are not drawn at all.
 
-use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
+use glam::{BVec3, Mat4, Vec3, Vec4, Vec4Swizzles};
 
 #[cfg(feature = "vulkan")]
 use crate::abi;
-use crate::frame::Cut;
+use crate::frame::culling::{Culled, is_back, is_outside, is_small};
+use crate::frame::{Cut, Seen};
 use crate::method::{Outline, Pass};
 #[cfg(feature = "vulkan")]
 use crate::tessellation::Spacing;
@@ -12,15 +13,31 @@ use crate::tessellation::{Levels, levels_of_edges};
 
 /// By what the device decides about patches, in each view by itself. A level belongs to an edge of the mesh and depends on nothing but its ends, so both
 /// sides agree to the bit; where levels are not whole, spacing is fractional and nothing pops.
+///
+/// What is left out is left out before its control points are computed, and conservatively: pictures stay the same, pixel by pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decision {
     /// Levels; none is above the cut's.
     pub metric: Metric,
-    /// Whether patches outside of the picture are left out, before their control points are computed. Conservative: by the convex hull of their control
-    /// vertices, with displacement; methods that do not keep within it are drawn as they are.
+    /// Whether patches outside of the picture are left out. By the convex hull of their control vertices, with displacement; methods that do not keep
+    /// within it are drawn as they are.
     pub frustum: bool,
+    /// Whether patches are left out that show nothing but their backs, for pipelines that cull these (`gpu::Target::cull`), in a
+    /// viewport whose height is no negative one. By the cone of normals of B-spline patches; all others, and what is displaced, are drawn as they are.
+    pub back: bool,
+    /// Whether patches are left out that no sample can be in, for pipelines that fill triangles. By the hull, as beyond the picture.
+    pub small: Option<Samples>,
     /// The first of as many views to decide by, instead of those that are drawn: a frozen camera that another one looks at.
     pub seen_from: Option<u32>,
+}
+
+/// Where samples are: in the standard places of 1, 2, 4 or 8 a pixel (`standardSampleLocations`), of a viewport that begins with a whole pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Samples {
+    /// Samples a pixel: 1, 2, 4 or 8.
+    pub a_pixel: u32,
+    /// Width and height of the viewport in pixels; that of [`Metric::Screen`], where levels go by that.
+    pub size: [f32; 2],
 }
 
 /// What levels go by.
@@ -39,17 +56,9 @@ pub enum Metric {
         /// Width and height of the picture in pixels.
         size: [f32; 2],
     },
-}
-
-/// What a view is decided by: its matrix, column by column, its eye and the height of its displacement, in local units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    /// From local units to clip space.
-    pub clip_from_model: [[f32; 4]; 4],
-    /// The eye.
-    pub eye: [f32; 3],
-    /// The height of the displacement.
-    pub height: f32,
+    /// The curvature, whatever the view: from one end of a segment to the other normals turn by at most so many degrees. Those of a vertex are the
+    /// directions of the corners of the faces around, by their areas.
+    Curvature(f32),
 }
 
 impl Decision {
@@ -60,20 +69,23 @@ impl Decision {
             Metric::Cut => (0, 1.0, [1.0; 2]),
             Metric::Distance(near) => (abi::DECIDE_DISTANCE, near, [1.0; 2]),
             Metric::Screen { pixels, size } => (abi::DECIDE_SCREEN, pixels, size),
+            Metric::Curvature(degrees) => (abi::DECIDE_CURVATURE, degrees.to_radians(), [1.0; 2]),
         };
-        let fractional = if cut.spacing == Spacing::FractionalEven {
-            abi::FRAME_FRACTIONAL_EVEN
-        } else {
-            0
-        };
-        let frustum = if self.frustum { abi::DECIDE_FRUSTUM } else { 0 };
+        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+        let rows = self.small.map_or(0, |samples| samples.a_pixel);
+        let flags = flag(
+            cut.spacing == Spacing::FractionalEven,
+            abi::FRAME_FRACTIONAL_EVEN,
+        ) | flag(self.frustum, abi::DECIDE_FRUSTUM)
+            | flag(self.back, abi::DECIDE_BACK)
+            | flag(self.small.is_some(), abi::DECIDE_SMALL);
         abi::Decision {
             view,
             seen: self.seen_from.unwrap_or(view),
-            flags: metric | fractional | frustum | eyes << abi::FRAME_EYES_SHIFT,
+            flags: metric | flags | rows << abi::DECIDE_ROWS_SHIFT | eyes << abi::FRAME_EYES_SHIFT,
             measure,
             level: cut.spacing.clamp(cut.level, max_level),
-            size,
+            size: self.small.map_or(size, |samples| samples.size),
         }
     }
 
@@ -88,45 +100,88 @@ impl Decision {
         cut: Cut,
         seen: &Seen,
     ) -> Option<Levels> {
-        let record = pass.patches.get(patch)?;
-        let hull = pass.hull(patch).iter();
-        let points: Vec<Vec3> = hull.map(|&vertex| vertices[vertex as usize]).collect();
-        if self.frustum && !points.is_empty() && is_outside(&points, seen) {
-            return Some(Levels {
-                domain: pass.domain,
-                edges: [0.0; 4],
-                inside: 0.0,
-            });
-        }
-        let level = |&side: &u32| {
-            let list = outline.side(side);
-            self.level_of_side(list, vertices, cut, seen)
-        };
-        let edges = pass.sides.get(patch)?.each_ref().map(level);
-        Some(levels_of_edges(
-            pass.domain,
-            record,
-            edges,
-            cut.spacing,
-            pass.max_level,
-        ))
+        let decided = self.decide(outline, pass, patch, vertices, cut, seen)?;
+        Some(decided.unwrap_or(Levels {
+            domain: pass.domain,
+            edges: [0.0; 4],
+            inside: 0.0,
+        }))
     }
 
-    /// The level of an edge, given by its ends, or the greatest of a face's.
-    fn level_of_side(&self, list: &[u32], vertices: &[Vec3], cut: Cut, seen: &Seen) -> f32 {
+    /// The same, or why the patch is not drawn.
+    pub fn decide(
+        &self,
+        outline: &Outline,
+        pass: &Pass,
+        patch: usize,
+        vertices: &[Vec3],
+        cut: Cut,
+        seen: &Seen,
+    ) -> Option<Result<Levels, Culled>> {
+        let record = pass.patches.get(patch)?;
+        let sides = pass.sides.get(patch)?;
+        let place = |&vertex: &u32| vertices[vertex as usize];
+        let points: Vec<Vec3> = pass.hull(patch).iter().map(place).collect();
+        let own = sides.iter().flat_map(|&side| outline.side(side));
+        let own: Vec<Vec3> = own.map(place).collect();
+        if self.frustum && !points.is_empty() && is_outside(&own, &points, seen) {
+            return Some(Err(Culled::Frustum));
+        }
+        if let Some(Samples { a_pixel, size }) = self.small.filter(|_| !points.is_empty())
+            && is_small(&points, seen, size, a_pixel as f32)
+        {
+            return Some(Err(Culled::Small));
+        }
+        let level = |&side: &u32| self.level_of_side(outline, side, vertices, cut, seen);
+        let edges = sides.each_ref().map(level);
+        let levels = levels_of_edges(pass.domain, record, edges, cut.spacing, pass.max_level);
+        let spline = pass.spline(patch).filter(|_| self.back);
+        let points = spline.map(|points| points.each_ref().map(place));
+        if points.is_some_and(|points| is_back(&points, seen, &levels, cut.spacing)) {
+            return Some(Err(Culled::Back));
+        }
+        Some(Ok(levels))
+    }
+
+    /// Whether anything of an instance may be seen, all of whose control vertices are in a box from `low` to `high`, in local units: of one that is not, no
+    /// patch would be drawn by methods that keep within hulls. So a frame can go without its views, before anything is decided about its patches.
+    pub fn may_show(&self, [low, high]: [Vec3; 2], seen: &Seen) -> bool {
+        let corners: [Vec3; 8] = std::array::from_fn(|i| {
+            let is_high = BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0);
+            Vec3::select(is_high, high, low)
+        });
+        let outside = self.frustum && is_outside(&corners, &corners, seen);
+        let is_small = |Samples { a_pixel, size }| is_small(&corners, seen, size, a_pixel as f32);
+        !outside && !self.small.is_some_and(is_small)
+    }
+
+    /// The level of an edge, or the greatest of a face's.
+    fn level_of_side(
+        &self,
+        outline: &Outline,
+        side: u32,
+        vertices: &[Vec3],
+        cut: Cut,
+        seen: &Seen,
+    ) -> f32 {
         if self.metric == Metric::Cut {
             return cut.level;
         }
+        let list = outline.side(side);
         let edges = if list.len() == 2 { 1 } else { list.len() };
-        let ends =
-            |edge: usize| [edge, (edge + 1) % list.len()].map(|i| vertices[list[i] as usize]);
-        let levels = (0..edges).map(|edge| self.level_of_ends(ends(edge), cut, seen));
+        let ends = |edge: usize| [edge, (edge + 1) % list.len()].map(|i| list[i]);
+        let levels = (0..edges).map(|edge| match self.metric {
+            Metric::Curvature(degrees) => {
+                turn(outline, ends(edge), vertices) / degrees.to_radians()
+            }
+            _ => self.level_of_ends(ends(edge).map(|end| vertices[end as usize]), cut, seen),
+        });
         levels.fold(cut.spacing.least(), f32::max).min(cut.level)
     }
 
     fn level_of_ends(&self, [a, b]: [Vec3; 2], cut: Cut, seen: &Seen) -> f32 {
         match self.metric {
-            Metric::Cut => cut.level,
+            Metric::Cut | Metric::Curvature(_) => cut.level,
             Metric::Distance(near) => {
                 let eye = Vec3::from(seen.eye);
                 let away = a.distance_squared(eye).min(b.distance_squared(eye)).sqrt();
@@ -144,18 +199,15 @@ impl Decision {
     }
 }
 
-/// Whether all points are outside of one side of the picture.
-fn is_outside(points: &[Vec3], seen: &Seen) -> bool {
-    let clip = Mat4::from_cols_array_2d(&seen.clip_from_model);
-    let [x, y, z, depth] = [0, 1, 2, 3].map(|row| clip.row(row));
-    let planes = [depth + x, depth - x, depth + y, depth - y, z, depth - z];
-    planes.into_iter().any(|plane| {
-        let reach = seen.height.abs() * plane.xyz().length();
-        points.iter().all(|&point| {
-            let summands = (plane.xyz() * point).abs();
-            let rounding = 1e-6 * (summands.element_sum() + plane.w.abs());
-            let margin = reach + rounding + 0.002 * depth.dot(point.extend(1.0)).abs();
-            plane.dot(point.extend(1.0)) < -margin
-        })
-    })
+/// By how many radians normals turn between the ends of an edge.
+fn turn(outline: &Outline, ends: [u32; 2], vertices: &[Vec3]) -> f32 {
+    let [a, b] = ends.map(|vertex| {
+        let at = |vertex: u32| vertices[vertex as usize];
+        let corner = |sum: Vec3, &[next, before]: &[u32; 2]| {
+            sum + (at(next) - at(vertex)).cross(at(before) - at(vertex))
+        };
+        let sum = outline.star(vertex).iter().fold(Vec3::ZERO, corner);
+        sum / sum.length().max(1e-37)
+    });
+    2.0 * (a - b).length().atan2((a + b).length())
 }

@@ -5,22 +5,28 @@
 
 mod backend;
 mod batches;
+mod culling;
 mod cut;
 mod decision;
 mod draw;
 mod draw_list;
 mod options;
+mod outcome;
 mod patterns;
 mod residence;
+mod seen;
 mod tessellated;
 
 pub use backend::Backend;
+pub use culling::Culled;
 pub use cut::Cut;
-pub use decision::{Decision, Metric, Seen};
+pub use decision::{Decision, Metric, Samples};
 pub use draw::Draw;
 pub use draw_list::{Batch, DrawList};
 pub use options::{Decides, Slots, SurfaceOptions};
+pub use outcome::Outcome;
 #[cfg(feature = "vulkan")]
 pub(crate) use patterns::{Key, key};
 pub use residence::Residence;
+pub use seen::Seen;
 pub use tessellated::{Tessellated, TessellatedPoint};

@@ -8,7 +8,7 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Decides, Decision, DrawList, Metric};
+use crate::frame::{Decides, Decision, DrawList, Metric, Outcome, Samples};
 use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::points::compute_pipeline;
 use crate::gpu::sets::STAGES;
@@ -67,8 +67,9 @@ impl FrameSlot {
     /// Later draws wait for it. Binds a compute pipeline and sets 0 to 2, and pushes constants.
     ///
     /// # Errors
-    /// [`Misuse::OtherSurface`]; [`Misuse::DecidedByDevice`] where the host decides; [`Misuse::View`], [`Misuse::Eyes`] for views that there are not;
-    /// [`Misuse::Measure`]. Nothing has been recorded then.
+    /// [`Misuse::OtherSurface`]; [`Misuse::DecidedByDevice`] where the host decides, and for patches that are left out where vertices are moved to show
+    /// cracks; [`Misuse::View`], [`Misuse::Eyes`] for views that there are not; [`Misuse::Measure`], [`Misuse::Samples`], [`Misuse::Pictures`]. Nothing has
+    /// been recorded then.
     ///
     /// # Safety
     /// `cmd` is recording on `device`, which made all of this, after `cmd_prepare`, outside of a render pass, on a queue that also computes, and is submitted
@@ -139,22 +140,40 @@ impl FrameSlot {
                 return Err(Error::Misuse(Misuse::View { view, views }));
             }
         }
-        let measures = match decision.metric {
-            Metric::Cut => [1.0; 3],
-            Metric::Distance(near) => [near; 3],
-            Metric::Screen {
-                pixels,
-                size: [x, y],
-            } => [pixels, x, y],
-        };
-        // What is no number is not greater either.
-        match measures
-            .into_iter()
-            .find(|&given| !(given > 0.0 && given.is_finite()))
-        {
-            Some(given) => Err(Error::Misuse(Misuse::Measure { given })),
-            None => Ok(()),
+        self.check_culling(decision)?;
+        check_measures(decision)
+    }
+
+    /// # Errors
+    /// [`Misuse::DecidedByDevice`] where what is left out may be seen after all; [`Misuse::Samples`].
+    fn check_culling(&self, decision: &Decision) -> Result<()> {
+        let culls = decision.frustum || decision.back || decision.small.is_some();
+        if culls && self.options().amplify_cracks {
+            let what = "amplified cracks, where patches are left out";
+            return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
         }
+        match decision.small {
+            Some(Samples { a_pixel, .. }) if ![1, 2, 4, 8].contains(&a_pixel) => {
+                Err(Error::Misuse(Misuse::Samples { given: a_pixel }))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the device decided for a range of views, for a list of this cut; see [`decided`](Self::decided). Nothing where the host decides.
+    ///
+    /// # Errors
+    /// [`Misuse::OtherSurface`]; [`Misuse::NotReadBack`].
+    pub fn outcome(&self, tables: &Tables, list: &DrawList, views: Range<u32>) -> Result<Outcome> {
+        self.check_owner(tables, list)?;
+        self.counters()?;
+        let mut outcome = Outcome::default();
+        for view in views {
+            for (number, pass) in tables.prepared().passes.iter().enumerate() {
+                outcome += Outcome::of(pass, self.decided(number, view), list.cut());
+            }
+        }
+        Ok(outcome)
     }
 
     /// Says at which cut, and up to which view, the device has decided.
@@ -176,5 +195,31 @@ impl FrameSlot {
             return Ok(());
         }
         Err(Error::Misuse(Misuse::NotDecided))
+    }
+}
+
+/// # Errors
+/// [`Misuse::Measure`] for what is not greater than 0; [`Misuse::Pictures`].
+fn check_measures(decision: &Decision) -> Result<()> {
+    let [x, y] = decision.small.map_or([1.0; 2], |samples| samples.size);
+    let measures = match decision.metric {
+        Metric::Cut => [1.0, x, y],
+        Metric::Distance(measure) | Metric::Curvature(measure) => [measure, x, y],
+        Metric::Screen { size, .. } if decision.small.is_some() && size != [x, y] => {
+            let (levels, samples) = (size, [x, y]);
+            return Err(Error::Misuse(Misuse::Pictures { levels, samples }));
+        }
+        Metric::Screen {
+            pixels,
+            size: [x, y],
+        } => [pixels, x, y],
+    };
+    // What is no number is not greater either.
+    match measures
+        .into_iter()
+        .find(|&given| !(given > 0.0 && given.is_finite()))
+    {
+        Some(given) => Err(Error::Misuse(Misuse::Measure { given })),
+        None => Ok(()),
     }
 }

@@ -3,16 +3,25 @@
 //! An engine asks [`Support::query`] whether a device will do and lets [`FeatureChain`] set the features when it creates the
 //! device, or sets them in structs of its own with [`Support::require`].
 
+pub(crate) mod extension;
+mod extra;
+
 use ash::{khr, vk};
 
 use crate::error::{Error, Misuse, Result};
+use crate::gpu::features::extension::has_extension;
 use crate::gpu::sets::STORAGE_BUFFERS;
+
+use extra::ExtraChain;
+pub use extra::ExtraFeatures;
 
 /// Features that we use where they exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OptionalFeatures {
     /// Wireframes (`fillModeNonSolid`).
     pub fill_mode_non_solid: bool,
+    /// Lines that are wider than a pixel (`wideLines`).
+    pub wide_lines: bool,
     /// The backend that cuts patches in geometry shaders (`geometryShader`).
     pub geometry_shader: bool,
     /// Shader invocation counts (`pipelineStatisticsQuery`).
@@ -29,18 +38,6 @@ pub struct OptionalFeatures {
     pub maintenance4: bool,
 }
 
-/// Features that are there on request: our own shaders use none of them, the conformance suite does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExtraFeatures {
-    /// Reads and writes beyond a buffer's end do no harm (`robustBufferAccess`). Every device has it; some are slower with it.
-    pub robust_buffer_access: bool,
-    /// Shaders may speak the Vulkan memory model (`vulkanMemoryModel`), for atomic operations as well (`vulkanMemoryModelDeviceScope`).
-    ///
-    /// With the first of the two alone our shaders are not valid: their atomic operations have device scope
-    /// (VUID-RuntimeSpirv-vulkanMemoryModel-06265).
-    pub vulkan_memory_model: bool,
-}
-
 /// The proof that a device was created with the features that our shaders need, and which of the optional ones it has.
 ///
 /// Vulkan does not tell what a device was created with, so whoever creates it shows the structs: [`FeatureChain::enabled`], or
@@ -48,6 +45,7 @@ pub struct ExtraFeatures {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Enabled {
     pub(super) fill_mode_non_solid: bool,
+    pub(super) wide_lines: bool,
     pub(super) geometry_shader: bool,
     pub(super) multi_draw_indirect: bool,
     pub(super) multiview: bool,
@@ -102,8 +100,8 @@ pub struct Support {
     pub max_storage_buffer_range: u32,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
-    /// Whether [`ExtraFeatures::vulkan_memory_model`] can be asked for.
-    pub vulkan_memory_model: bool,
+    /// What can be asked for beyond that.
+    pub extra: ExtraFeatures,
     /// `maintenance4` comes from an extension that has to be named, as the device is below Vulkan 1.3.
     pub maintenance4_by_extension: bool,
 }
@@ -197,6 +195,7 @@ impl Support {
         }
         Ok(Enabled {
             fill_mode_non_solid: on(core.fill_mode_non_solid),
+            wide_lines: on(core.wide_lines),
             geometry_shader: on(core.geometry_shader),
             multi_draw_indirect: on(core.multi_draw_indirect)
                 && on(core.draw_indirect_first_instance),
@@ -229,6 +228,7 @@ impl Support {
         set(&mut vulkan12.scalar_block_layout, true);
         let optional = self.optional;
         set(&mut core.fill_mode_non_solid, optional.fill_mode_non_solid);
+        set(&mut core.wide_lines, optional.wide_lines);
         set(&mut core.geometry_shader, optional.geometry_shader);
         set(
             &mut core.pipeline_statistics_query,
@@ -244,15 +244,13 @@ impl Support {
     /// As [`Support::query`].
     unsafe fn query_features(&mut self, instance: &ash::Instance, physical: vk::PhysicalDevice) {
         let mut scalar = vk::PhysicalDeviceScalarBlockLayoutFeatures::default();
-        let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
         let mut maintenance4 = vk::PhysicalDeviceMaintenance4Features::default();
         let mut multiview = vk::PhysicalDeviceMultiviewFeatures::default();
         let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
         let mut features = vk::PhysicalDeviceFeatures2::default();
         // Structs from beyond the device's version stay out of the chain: nobody would fill them in.
         if self.api_version >= vk::API_VERSION_1_2 {
-            features = features.push_next(&mut scalar).push_next(&mut model);
-            features = features.push_next(&mut multiview);
+            features = features.push_next(&mut scalar).push_next(&mut multiview);
         }
         let core13 = self.api_version >= vk::API_VERSION_1_3;
         // SAFETY: the caller's instance and physical device. One that fails to answer goes without: we can do without.
@@ -272,6 +270,7 @@ impl Support {
         self.scalar_block_layout = scalar.scalar_block_layout != 0;
         self.optional = OptionalFeatures {
             fill_mode_non_solid: core.fill_mode_non_solid != 0,
+            wide_lines: core.wide_lines != 0,
             geometry_shader: core.geometry_shader != 0,
             pipeline_statistics_query: core.pipeline_statistics_query != 0,
             sample_rate_shading: core.sample_rate_shading != 0,
@@ -281,8 +280,8 @@ impl Support {
             dynamic_rendering: rendering.dynamic_rendering != 0,
             maintenance4: maintenance4.maintenance4 != 0,
         };
-        self.vulkan_memory_model =
-            model.vulkan_memory_model != 0 && model.vulkan_memory_model_device_scope != 0;
+        // SAFETY: the caller's.
+        self.extra = unsafe { ExtraFeatures::query(instance, physical, self.api_version) };
         self.maintenance4_by_extension = by_extension && self.optional.maintenance4;
     }
 }
@@ -295,6 +294,7 @@ pub struct FeatureChain {
     multiview: vk::PhysicalDeviceMultiviewFeatures<'static>,
     maintenance4: Option<vk::PhysicalDeviceMaintenance4Features<'static>>,
     rendering: Option<vk::PhysicalDeviceDynamicRenderingFeatures<'static>>,
+    extra: ExtraChain,
 }
 
 impl FeatureChain {
@@ -317,15 +317,14 @@ impl FeatureChain {
             multiview,
             maintenance4: support.optional.maintenance4.then_some(maintenance4),
             rendering: support.optional.dynamic_rendering.then_some(rendering),
+            extra: ExtraChain::default(),
         }
     }
 
     /// Switches on what is asked for beyond that; the device must have it.
     pub fn with(mut self, extra: ExtraFeatures) -> FeatureChain {
-        self.core.features.robust_buffer_access |= vk::Bool32::from(extra.robust_buffer_access);
-        let model = vk::Bool32::from(extra.vulkan_memory_model);
-        self.vulkan12.vulkan_memory_model |= model;
-        self.vulkan12.vulkan_memory_model_device_scope |= model;
+        extra.switch_on(&mut self.core.features, &mut self.vulkan12);
+        self.extra = ExtraChain::new(extra);
         self
     }
 
@@ -345,7 +344,7 @@ impl FeatureChain {
     /// Chains the structs to `info`.
     ///
     /// # Safety
-    /// The device's [`Support::missing`] is empty and [`Support::extensions`] are enabled in `info`. `info` has no
+    /// The device's [`Support::missing`] is empty; [`Support::extensions`], and [`ExtraFeatures::extensions`] of what was asked for, are enabled in `info`. `info` has no
     /// `pEnabledFeatures` (VUID-VkDeviceCreateInfo-pNext-00373), and none of `VkPhysicalDeviceFeatures2`,
     /// `VkPhysicalDeviceVulkan12Features` (nor a struct that it contains, VUID-VkDeviceCreateInfo-pNext-02830),
     /// `VkPhysicalDeviceMultiviewFeatures`, `VkPhysicalDeviceVulkan11Features`, `VkPhysicalDeviceMaintenance4Features`,
@@ -361,28 +360,9 @@ impl FeatureChain {
         if let Some(rendering) = &mut self.rendering {
             info = info.push_next(rendering);
         }
-        info = info.push_next(&mut self.multiview);
+        info = self.extra.chain(info).push_next(&mut self.multiview);
         info.push_next(&mut self.vulkan12).push_next(&mut self.core)
     }
-}
-
-/// Whether `physical` has the device extension `name`.
-///
-/// # Errors
-/// What `vkEnumerateDeviceExtensionProperties` returns.
-///
-/// # Safety
-/// `physical` belongs to the live `instance`.
-pub(crate) unsafe fn has_extension(
-    instance: &ash::Instance,
-    physical: vk::PhysicalDevice,
-    name: &std::ffi::CStr,
-) -> std::result::Result<bool, vk::Result> {
-    // SAFETY: the caller's instance and physical device.
-    let all = unsafe { instance.enumerate_device_extension_properties(physical) }?;
-    let named =
-        |extension: &vk::ExtensionProperties| extension.extension_name_as_c_str() == Ok(name);
-    Ok(all.iter().any(named))
 }
 
 #[cfg(test)]

@@ -32,7 +32,8 @@ mod view;
 pub mod workaround;
 
 pub use crate::frame::{
-    Backend, Batch, Cut, Decides, Decision, DrawList, Metric, Residence, Slots, SurfaceOptions,
+    Backend, Batch, Cut, Decides, Decision, DrawList, Metric, Outcome, Residence, Samples, Slots,
+    SurfaceOptions,
 };
 pub use arrival::Arrival;
 pub use buffer::Buffer;

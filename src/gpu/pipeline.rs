@@ -351,7 +351,9 @@ impl PipelinePlan<'_> {
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(target.samples);
         let depth = self.depth();
         let colours = vec![self.colour(); target.attachments.colours()];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&colours);
+        let blend = vk::PipelineColorBlendStateCreateInfo::default()
+            .attachments(&colours)
+            .blend_constants([self.options.target.line_share(); 4]);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
         let mut info = vk::GraphicsPipelineCreateInfo::default()
@@ -441,7 +443,20 @@ impl PipelinePlan<'_> {
             Fill::Depth => vk::ColorComponentFlags::empty(),
             _ => vk::ColorComponentFlags::RGBA,
         };
-        vk::PipelineColorBlendAttachmentState::default().color_write_mask(written)
+        let state = vk::PipelineColorBlendAttachmentState::default().color_write_mask(written);
+        if self.options.fill != Fill::Lines || self.options.target.line_width >= 1.0 {
+            return state;
+        }
+        let (own, other) = (
+            vk::BlendFactor::CONSTANT_ALPHA,
+            vk::BlendFactor::ONE_MINUS_CONSTANT_ALPHA,
+        );
+        state
+            .blend_enable(true)
+            .src_color_blend_factor(own)
+            .dst_color_blend_factor(other)
+            .src_alpha_blend_factor(own)
+            .dst_alpha_blend_factor(other)
     }
 
     fn rasterization(&self) -> vk::PipelineRasterizationStateCreateInfo<'static> {
@@ -466,6 +481,10 @@ impl PipelinePlan<'_> {
             .depth_bias_enable(bias != [0.0; 2])
             .depth_bias_constant_factor(bias[0])
             .depth_bias_slope_factor(bias[1])
-            .line_width(1.0)
+            .line_width(if lines {
+                target.line_width.max(1.0)
+            } else {
+                1.0
+            })
     }
 }

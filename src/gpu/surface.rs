@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Batch, Cut, Decision, DrawList, SurfaceOptions};
+use crate::frame::{Batch, Cut, Decision, DrawList, Outcome, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
     Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory,
@@ -265,6 +265,14 @@ impl TessellatedSurface {
     /// As [`FrameSlot::decided`].
     pub fn decided(&self, pass: usize, view: u32) -> &[abi::PatchDraw] {
         self.slot.decided(pass, view)
+    }
+
+    /// As [`FrameSlot::outcome`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn outcome(&self, list: &DrawList, views: Range<u32>) -> Result<Outcome> {
+        self.slot.outcome(&self.tables, list, views)
     }
 
     /// As [`Drawing::cmd_draw`].

@@ -70,6 +70,10 @@ pub struct Target<'a> {
     pub compare: vk::CompareOp,
     /// How depths are moved.
     pub bias: DepthBias,
+    /// How wide the lines of [`Fill::Lines`] are, in pixels. Above 1 within the device's `lineWidthRange`, and with the feature `wideLines`. Few devices
+    /// draw lines that are thinner than a pixel: below 1 they are a pixel wide and have so much less of their colour, by blending, of which
+    /// attachments must be capable.
+    pub line_width: f32,
 }
 
 impl<'a> Target<'a> {
@@ -82,6 +86,7 @@ impl<'a> Target<'a> {
             cull: vk::CullModeFlags::NONE,
             compare: vk::CompareOp::LESS_OR_EQUAL,
             bias: DepthBias::default(),
+            line_width: 1.0,
         }
     }
 
@@ -98,6 +103,11 @@ impl<'a> Target<'a> {
     pub(super) fn is_reversed(&self) -> bool {
         let reversed = [vk::CompareOp::GREATER, vk::CompareOp::GREATER_OR_EQUAL];
         reversed.contains(&self.compare)
+    }
+
+    /// How much of their colour lines have. The edge between two triangles is drawn by both: what shines through is what shines through twice.
+    pub(super) fn line_share(&self) -> f32 {
+        1.0 - (1.0 - self.line_width.clamp(0.0, 1.0)).sqrt()
     }
 
     /// How many views an instance has.
@@ -218,7 +228,9 @@ impl PipelineOptions<'_> {
         let attachments = self.target.attachments;
         let dynamic = matches!(attachments, Attachments::Dynamic { .. });
         let multiview = self.target.view_mask != 0;
+        let wide = lines && self.target.line_width > 1.0;
         Enabled::require(lines, enabled.fill_mode_non_solid, "fillModeNonSolid")?;
+        Enabled::require(wide, enabled.wide_lines, "wideLines")?;
         Enabled::require(geometry, enabled.geometry_shader, "geometryShader")?;
         Enabled::require(dynamic, enabled.dynamic_rendering, "dynamicRendering")?;
         Enabled::require(multiview, enabled.multiview, "multiviewTessellationShader")?;

@@ -1,8 +1,10 @@
 //! A logical device with one queue and an allocator.
 
 use crate::error::{Error, Result};
-use crate::gpu::features::has_extension;
-use crate::gpu::{Enabled, ExtraFeatures, FeatureChain, failed};
+use crate::gpu::features::extension::has_extension;
+use crate::gpu::{
+    Enabled, ExtraFeatures, FeatureChain, Memory, MemoryBlock, MemoryRequest, failed,
+};
 use crate::host::Instance;
 use crate::host::choice::{DeviceInfo, choose, devices};
 use crate::host::instance::unavailable;
@@ -31,6 +33,7 @@ struct Shared {
     /// Locked while something is submitted: a queue is for one thread at a time.
     queue: Mutex<vk::Queue>,
     info: DeviceInfo,
+    extra: ExtraFeatures,
     hung: AtomicBool,
     logical: Logical,
 }
@@ -117,6 +120,7 @@ impl Device {
             allocator: Mutex::new(allocator.map_err(crate::gpu::memory::out_of_memory)?),
             queue: Mutex::new(queue),
             info,
+            extra,
             hung: AtomicBool::new(false),
             logical,
         })))
@@ -143,6 +147,11 @@ impl Device {
         enabled.expect("only a device that lacks nothing is opened, with this chain")
     }
 
+    /// What it was opened with beyond that.
+    pub fn extra(&self) -> ExtraFeatures {
+        self.0.extra
+    }
+
     /// Its limits.
     pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
         &self.0.info.limits
@@ -163,6 +172,11 @@ impl Device {
     pub fn allocator(&self) -> MutexGuard<'_, Allocator> {
         let allocator = self.0.allocator.lock();
         allocator.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Its memory, locked for each piece alone: while something large is made of it, others get theirs.
+    pub fn memory(&self) -> SharedMemory<'_> {
+        SharedMemory(self)
     }
 
     /// Whether it is the CPU itself.
@@ -287,6 +301,20 @@ impl Device {
     }
 }
 
+/// A device's memory, for many threads at once: see [`Device::memory`].
+pub struct SharedMemory<'a>(&'a Device);
+
+// SAFETY: as the allocator, which is locked for each call.
+unsafe impl Memory for SharedMemory<'_> {
+    fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<MemoryBlock> {
+        Memory::allocate(&mut self.0.allocator(), request)
+    }
+
+    fn free(&mut self, block: MemoryBlock) {
+        Memory::free(&mut self.0.allocator(), block);
+    }
+}
+
 /// A submission that came to a bad end.
 struct Unfinished {
     error: Error,
@@ -348,6 +376,7 @@ fn create(
     wanted: &[&'static CStr],
 ) -> Result<ash::Device> {
     let mut extensions = info.support.extensions();
+    extensions.extend(extra.extensions());
     extensions.extend(wanted);
     // VUID-VkDeviceCreateInfo-pProperties-04451: a device that has it insists on it.
     let subset = khr::portability_subset::NAME;

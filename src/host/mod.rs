@@ -20,7 +20,7 @@ pub use area::Area;
 pub use bench::{Bench, Frame, Loaded, Shot, Style, vertex_bits, vertex_key};
 pub use choice::{DeviceInfo, devices};
 pub use coloured::{ColouredTriangles, ColouredVertex};
-pub use device::Device;
+pub use device::{Device, SharedMemory};
 pub use instance::Instance;
 pub use offscreen::{Encoding, OffscreenTarget};
 pub use owned::{Destroy, Owned};

@@ -180,6 +180,30 @@ impl OffscreenTarget {
     /// # Safety
     /// `cmd` is recording on this target's device, outside of a render pass, and of a graphics queue.
     pub unsafe fn begin(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
+        // SAFETY: this function's contract.
+        unsafe {
+            self.begin_with(cmd, clear, vk::SubpassContents::INLINE);
+            self.cmd_set_view(cmd);
+        }
+    }
+
+    /// The same for draws in secondary command buffers, each of which begins with [`cmd_set_view`](Self::cmd_set_view).
+    ///
+    /// # Safety
+    /// As [`begin`](Self::begin).
+    pub unsafe fn begin_for_secondary(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
+        // SAFETY: this function's contract.
+        unsafe { self.begin_with(cmd, clear, vk::SubpassContents::SECONDARY_COMMAND_BUFFERS) };
+    }
+
+    /// # Safety
+    /// As [`begin`](Self::begin).
+    unsafe fn begin_with(
+        &self,
+        cmd: vk::CommandBuffer,
+        clear: [f32; 4],
+        contents: vk::SubpassContents,
+    ) {
         let colour = vk::ClearColorValue { float32: clear };
         let depth = vk::ClearDepthStencilValue {
             depth: 1.0,
@@ -197,6 +221,19 @@ impl OffscreenTarget {
             .framebuffer(self.framebuffer)
             .render_area(area)
             .clear_values(&clears);
+        // SAFETY: this function's contract; pass and framebuffer are of this device and match.
+        unsafe {
+            self.device
+                .raw()
+                .cmd_begin_render_pass(cmd, &info, contents)
+        };
+    }
+
+    /// Sets the viewport and the scissor: those of [`begin`](Self::begin).
+    ///
+    /// # Safety
+    /// `cmd` is recording on this target's device.
+    pub unsafe fn cmd_set_view(&self, cmd: vk::CommandBuffer) {
         let viewport = vk::Viewport::default()
             .x(-(self.part.x as f32))
             .y(-(self.part.y as f32))
@@ -204,11 +241,10 @@ impl OffscreenTarget {
             .height(self.extent.height as f32)
             .max_depth(1.0);
         let device = self.device.raw();
-        // SAFETY: this function's contract; pass and framebuffer are of this device and match.
+        // SAFETY: this function's contract.
         unsafe {
-            device.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE);
             device.cmd_set_viewport(cmd, 0, &[viewport]);
-            device.cmd_set_scissor(cmd, 0, &[area]);
+            device.cmd_set_scissor(cmd, 0, &[self.area.rect(self.part)]);
         }
     }
 

@@ -2,11 +2,9 @@
 
 use std::ops::{Deref, DerefMut};
 
-use gpu_allocator::vulkan::Allocator;
-
 use crate::gpu::{
-    Buffer, CachePipelines, DecidePipeline, FrameSlot, Layout, Pipelines, PointPipeline, Pose,
-    Tables, TessellatedSurface,
+    Buffer, CachePipelines, DecidePipeline, FrameSlot, Layout, Memory, Pipelines, PointPipeline,
+    Pose, Tables, TessellatedSurface,
 };
 use crate::host::Device;
 
@@ -16,19 +14,19 @@ pub trait Destroy {
     ///
     /// # Safety
     /// `device` and `allocator` made it, no submitted command still uses it, and no recorded one will be submitted.
-    unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator);
+    unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory);
 }
 
 macro_rules! destroyed {
     ($($of_device:ty),*; $($with_memory:ty),*) => {
         $(impl Destroy for $of_device {
-            unsafe fn destroy(self, device: &ash::Device, _: &mut Allocator) {
+            unsafe fn destroy(self, device: &ash::Device, _: &mut dyn Memory) {
                 // SAFETY: this function's contract.
                 unsafe { <$of_device>::destroy(self, device) };
             }
         })*
         $(impl Destroy for $with_memory {
-            unsafe fn destroy(self, device: &ash::Device, allocator: &mut Allocator) {
+            unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
                 // SAFETY: this function's contract.
                 unsafe { <$with_memory>::destroy(self, device, allocator) };
             }
@@ -81,7 +79,7 @@ impl<T: Destroy> Drop for Owned<T> {
     fn drop(&mut self) {
         if let Some(made) = self.made.take().filter(|_| !self.device.is_hung()) {
             // SAFETY: the contract of `new`: whatever used it has been waited for.
-            unsafe { made.destroy(self.device.raw(), &mut self.device.allocator()) };
+            unsafe { made.destroy(self.device.raw(), &mut self.device.memory()) };
         }
     }
 }

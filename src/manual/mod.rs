@@ -14,6 +14,7 @@
 //! - [Devices](devices): what a device needs, and driver faults
 //! - [Compare](compare): methods side by side
 //! - [Benchmarks](benchmarks): what a frame costs
+//! - [Figures](figures): the papers' tables and figures, made again
 //! - [Verify](verify): the conformance suite
 //! - [Command line](command_line): the program
 //! - [Library](library): the crate, for engines
@@ -46,6 +47,7 @@ chapters! {
     devices
     compare
     benchmarks
+    figures
     verify
     command_line
     library

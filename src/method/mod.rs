@@ -45,13 +45,17 @@
 //! (`tests/architecture.rs`). What its paper claims needs tests of its own, in `src/method/name/tests.rs`. Then make its modules with
 //! `scripts/update-spirv`, its pictures as `tests/pictures.rs` says, and its lines in [the manual](crate::manual).
 
+mod acc;
 mod bft;
+mod bicubic;
 mod cached;
 mod cell;
 #[cfg(feature = "vulkan")]
 mod deciding;
 mod displacement;
+mod edge_field;
 mod flat;
+mod gregory;
 mod options;
 mod origin;
 mod outline;
@@ -65,6 +69,7 @@ mod ptex;
 mod qas;
 mod quads;
 mod quadtree;
+mod spokes;
 mod surface;
 mod table;
 mod tags;
@@ -247,6 +252,8 @@ pub const METHODS: &[Method] = &[
     quadtree::METHOD,
     qas::METHOD,
     bft::METHOD,
+    gregory::METHOD,
+    acc::METHOD,
     pn::METHOD,
     phong::METHOD,
     flat::METHOD,

@@ -1,8 +1,9 @@
 //! The edges and faces of the control mesh, to which the edges of patches belong: levels that go by them agree on both sides of each.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec3, Vec3};
+use smallvec::SmallVec;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
@@ -21,7 +22,11 @@ pub struct Outline {
     edges: Vec<[u32; 2]>,
     faces: Arc<Faces>,
     vertices: usize,
+    /// Found when somebody asks.
+    stars: OnceLock<Vec<Star>>,
 }
+
+type Star = SmallVec<[[u32; 2]; 4]>;
 
 impl Outline {
     /// The outline of a control mesh.
@@ -31,6 +36,7 @@ impl Outline {
             edges: (0..topology.edge_count() as u32).map(ends).collect(),
             faces: topology.shared_faces().clone(),
             vertices: topology.vertex_count(),
+            stars: OnceLock::new(),
         }
     }
 
@@ -73,6 +79,23 @@ impl Outline {
             Some(ends) => ends,
             None => self.faces.get(side - self.edges.len()),
         }
+    }
+
+    /// The star of a vertex: in each face around, in the order of faces, the vertex behind it and the one before. None where there is no such vertex.
+    pub fn star(&self, vertex: u32) -> &[[u32; 2]] {
+        let stars = self.stars.get_or_init(|| self.find_stars());
+        stars.get(vertex as usize).map_or(&[], |star| &star[..])
+    }
+
+    fn find_stars(&self) -> Vec<Star> {
+        let mut stars = vec![Star::new(); self.vertices];
+        for face in self.faces.iter() {
+            let n = face.len();
+            for (corner, &vertex) in face.iter().enumerate() {
+                stars[vertex as usize].push([face[(corner + 1) % n], face[(corner + n - 1) % n]]);
+            }
+        }
+        stars
     }
 
     /// Unit normals of the vertices: of the faces around each, by their areas.

@@ -43,6 +43,8 @@ pub struct Pass {
     pub(super) cell: Option<CellAt>,
     /// How many control vertices bound a patch; None where they do not, see [`Pass::hull`].
     pub(super) hull: Option<fn(&Pass, usize) -> u32>,
+    /// Whether these are the control points of a bicubic B-spline, row by row along u.
+    pub(super) is_spline: bool,
     /// Of how many control vertices and points it was made. Filled in by [`Method::prepare`](crate::method::Method::prepare).
     pub(super) needs: [usize; 2],
 }
@@ -77,6 +79,7 @@ impl Pass {
             twin,
             cell: None,
             hull: None,
+            is_spline: false,
             needs: [0; 2],
         }
     }
@@ -138,6 +141,12 @@ impl Pass {
         };
         let first = record.controls as usize;
         &self.controls[first..first + count(self, patch) as usize]
+    }
+
+    /// The control points of a patch that is a bicubic B-spline, row by row along u; None of others.
+    pub fn spline(&self, patch: usize) -> Option<[u32; 16]> {
+        let points = self.hull(patch);
+        points.try_into().ok().filter(|_| self.is_spline)
     }
 
     /// The points that patch `patch` needs in the ring at `level`, from 10 on as at 10; none where there is no such patch.

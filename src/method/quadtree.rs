@@ -125,6 +125,7 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     let mut regular = pass("quadtree_regular", 16, twin::regular, options);
     // Masks of Catmull-Clark have no negative weights: a limit is within the hull of what it is a sum of.
     regular.hull = Some(|_, _| 16);
+    regular.is_spline = true;
     let [mut short, mut long] =
         ["quadtree", "quadtree_long"].map(|shader| Planning::new(shader, options));
     let parts = patches::parts(model);

@@ -6,8 +6,8 @@ use glam::camera::rh::proj::vulkan::perspective;
 use glam::camera::rh::view::look_at_mat4;
 use hullform::frame::Seen;
 use hullform::gpu::{
-    Backend, Cut, DecidePipeline, Decided, Decides, Decision, Fill, Metric, Residence, Shading,
-    SurfaceOptions, View,
+    Backend, Cut, DecidePipeline, Decided, Decides, Decision, Fill, Metric, Residence, Samples,
+    Shading, SurfaceOptions, View,
 };
 use hullform::host::{Owned, Shot};
 use hullform::mesh::Model;
@@ -18,9 +18,9 @@ use hullform::{Error, Misuse};
 use crate::common::gpu::{Gpu, Loaded, SIDE, SPACINGS, cut, prepare};
 use crate::shapes;
 
-const RESIDENCES: [Residence; 2] = [Residence::Ring, Residence::Cache];
+pub const RESIDENCES: [Residence; 2] = [Residence::Ring, Residence::Cache];
 
-fn options(residence: Residence) -> SurfaceOptions {
+pub fn options(residence: Residence) -> SurfaceOptions {
     SurfaceOptions {
         decides: Decides::Device,
         residence,
@@ -30,7 +30,7 @@ fn options(residence: Residence) -> SurfaceOptions {
 }
 
 /// How far its farthest vertex is from the middle of local units.
-fn radius(model: &Model) -> f32 {
+pub fn radius(model: &Model) -> f32 {
     let far = model.positions().into_iter().map(Vec3::length);
     far.fold(1e-30, f32::max)
 }
@@ -128,6 +128,7 @@ fn the_device_decides_in_each_view_what_the_twin_does() {
         let (vertices, radius) = (model.positions(), radius(&model));
         let metrics = [
             Metric::Cut,
+            Metric::Curvature(4.0),
             Metric::Distance(0.7 * radius),
             Metric::Screen {
                 pixels: 3.0,
@@ -141,6 +142,11 @@ fn the_device_decides_in_each_view_what_the_twin_does() {
             loaded.decision = Decision {
                 metric,
                 frustum: true,
+                back: true,
+                small: Some(Samples {
+                    a_pixel: 1,
+                    size: [SIDE as f32; 2],
+                }),
                 seen_from: None,
             };
             for view in views(4, radius) {
@@ -243,65 +249,6 @@ fn both_sides_of_every_edge_have_the_same_vertices() {
                 "{name}: {sides:?}"
             );
         }
-        drop(loaded);
-    }
-    gpu.finish();
-}
-
-#[test]
-fn what_is_left_out_is_not_seen_and_computes_nothing() {
-    let Some(gpu) = Gpu::open() else { return };
-    for (name, residence) in ["hull", "ngons"]
-        .into_iter()
-        .flat_map(|n| RESIDENCES.map(|r| (n, r)))
-    {
-        let model = shapes::built_in(name);
-        let cut = cut(8.0, Spacing::Equal);
-        let mut loaded = load(&gpu, &model, options(residence));
-        let mut sums = [0u64; 2];
-        for view in views(25, radius(&model)) {
-            let [whole, culled] = [false, true].map(|frustum| {
-                loaded.decision.frustum = frustum;
-                picture(&gpu, &mut loaded, cut, view)
-            });
-            assert!(whole.0 == culled.0, "{name} {residence:?} {view:?}");
-            sums[0] += u64::from(whole.1);
-            sums[1] += u64::from(culled.1);
-        }
-        match residence {
-            Residence::Ring => assert!(sums[1] < sums[0], "{name}: {sums:?}"),
-            Residence::Cache => assert_eq!(sums, [0, 0]),
-        }
-        drop(loaded);
-    }
-    gpu.finish();
-}
-
-/// Half of the vertices are beyond the picture's edge.
-#[test]
-fn where_half_is_outside_half_the_points_are_computed() {
-    let Some(gpu) = Gpu::open() else { return };
-    for file in crate::common::obj_files("models") {
-        let model = Model::new(hullform::mesh::read_obj(&file).expect("it is sound"));
-        let mut loaded = load(&gpu, &model, options(Residence::Ring));
-        let mut across: Vec<f32> = model.positions().iter().map(|vertex| vertex.x).collect();
-        across.sort_by(f32::total_cmp);
-        let mut view = loaded.view;
-        let scale = view.clip_from_model[0][0];
-        view.clip_from_model[3][0] = 1.0 - scale * across[across.len() / 2];
-        let [whole, culled] = [false, true].map(|frustum| {
-            loaded.decision.frustum = frustum;
-            picture(&gpu, &mut loaded, cut(8.0, Spacing::Equal), view)
-        });
-        let name = crate::common::stem(&file);
-        println!("{name}: {} of {} points", culled.1, whole.1);
-        assert!(whole.0 == culled.0, "{name}");
-        assert!(
-            100 * culled.1 <= 66 * whole.1,
-            "{name}: {} of {}",
-            culled.1,
-            whole.1
-        );
         drop(loaded);
     }
     gpu.finish();

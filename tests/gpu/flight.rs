@@ -277,7 +277,7 @@ fn thirty_instances_have_other_levels_in_each_frame_without_a_wait_between() {
     let decision = Decision {
         metric: Metric::Distance(1.0),
         frustum: true,
-        seen_from: None,
+        ..Decision::default()
     };
     let none = vk::PipelineCache::null();
     // SAFETY: all of one live device, here and below.

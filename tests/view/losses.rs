@@ -101,11 +101,17 @@ fn a_lost_surface_is_made_anew_and_the_picture_comes_back() {
 
 #[test]
 fn a_lost_device_is_opened_anew_with_all_that_was_changed() {
+    for call in ["vkQueuePresentKHR", "vkQueueSubmit"] {
+        loses_the_device(call);
+    }
+}
+
+fn loses_the_device(call: &str) {
     let Some(place) = Place::new() else { return };
     let lost = vk::Result::ERROR_DEVICE_LOST;
-    let session = place.open(&Fault::once("vkQueuePresentKHR", LATER, lost));
+    let session = place.open(&Fault::once(call, LATER, lost));
     change(&session);
-    stir(&session, "lost", told("opened anew"));
+    stir(&session, call, told("opened anew"));
     let state = session.until("drawn again", |state| {
         state["vertices"].as_u64() > Some(0) && state["models"][0]["methods"].is_array()
     });

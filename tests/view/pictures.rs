@@ -10,17 +10,17 @@ use serde_json::Value;
 use super::display;
 use crate::window::{Picture, Session, keys, read_png};
 
-/// At most so much differs on average, in steps of 255: `render` has finer edges, and draws lines half as wide.
+/// At most so much differs on average, in steps of 255: `render` has finer edges, and draws the lines of patches half as wide.
 const FINER: f64 = 0.9;
 const FINER_LINES: f64 = 4.5;
 
 /// What has lines whose width goes by pixels, or squares with sharp sides.
 const LINED: [&str; 4] = ["node kinds", "levels", "tree depth", "checker"];
 
-/// What is pressed from one picture to the next, so that in the end each choice has met many others; one for each kind of faces. Without wires, which `render` draws half as wide.
+/// What is pressed from one picture to the next, so that in the end each choice has met many others; one for each kind of faces.
 const WALKS: [(&str, &str); 3] = [
-    ("builtin:ngons", "c mb c o bc brc lc zc ac"),
-    ("builtin:cube", "mmmc bc rc lc mb c kc mb oc mb c mzc"),
+    ("builtin:ngons", "c mb c o bc brc lc zc ac w"),
+    ("builtin:cube", "w wmmmc bc rc lc mb c kc mb oc mb c mzc"),
     ("builtin:hull", "MM mmc bc bc oc rc c"),
 ];
 
@@ -77,11 +77,10 @@ fn compared(session: &Session, seen: &mut [BTreeSet<String>; 5]) -> Option<Strin
     let file = session.file("hullform-1.png");
     let picture = read_png(&file);
     std::fs::remove_file(file).expect("it is removed");
-    let frames = session.state()["frames"].as_u64();
+    // Each step changes what is copied.
+    let last = session.state()["copied"].clone();
     session.control('c');
-    let state = session.until("copied", |state| {
-        state["frames"].as_u64() > frames && state["copied"].is_string()
-    });
+    let state = session.until("copied", |state| state["copied"] != last);
     if state["models"][0]["error"].is_string() {
         return None;
     }
@@ -99,7 +98,8 @@ fn compared(session: &Session, seen: &mut [BTreeSet<String>; 5]) -> Option<Strin
     let line = state["copied"].as_str().expect("a command line");
     let drawn = draw(session, line);
     let apart = picture.difference(&drawn, false);
-    let is_lined = LINED.iter().any(|lined| look["shading"] == *lined);
+    let wires = look["wireframe"] == true;
+    let is_lined = wires || LINED.iter().any(|lined| look["shading"] == *lined);
     let most = if is_lined { FINER_LINES } else { FINER };
     println!("{apart:.2} {line}");
     Some(match apart <= most {

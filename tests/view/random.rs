@@ -8,6 +8,9 @@ use crate::window::Session;
 /// So long without being told otherwise; an hour is `HULLFORM_VIEW_SECONDS=3600`.
 const SECONDS: u64 = 10;
 
+/// MiB that the program takes at most, however long it runs. The validation layer is in it, and what a software driver compiles.
+const GREATEST_MEMORY: u64 = 1200;
+
 /// A row of numbers that looks random (Knuth, MMIX).
 struct Random(u64);
 
@@ -33,10 +36,16 @@ fn random_input_breaks_nothing() {
     let asked = std::env::var("HULLFORM_VIEW_SECONDS")
         .ok()
         .and_then(|text| text.parse().ok());
-    let end = Instant::now() + Duration::from_secs(asked.unwrap_or(SECONDS));
+    let started = Instant::now();
+    let end = started + Duration::from_secs(asked.unwrap_or(SECONDS));
     let mut random = Random(7);
+    let mut minutes = 0;
     while Instant::now() < end {
         one(&mut session, &mut random);
+        if started.elapsed().as_secs() / 60 > minutes {
+            minutes += 1;
+            println!("after {minutes} min: {} MiB", session.memory());
+        }
         if !session.runs() {
             let (code, words) = session.end();
             panic!("it has ended: {code:?} {words}");
@@ -51,6 +60,8 @@ fn random_input_breaks_nothing() {
     // Something may play by now: then there is always something left to do.
     let state = session.sooner_or_later("it answers", |state| state["frames"].as_u64() > frames);
     assert_eq!(state["validation"], 0, "{state:#}");
+    let memory = session.memory();
+    assert!(memory < GREATEST_MEMORY, "{memory} MiB");
     session.quit();
     let (code, words) = session.end();
     assert!(

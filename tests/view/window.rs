@@ -216,39 +216,38 @@ impl Session {
         path
     }
 
-    /// Closes the window, and what was changed in it is lost.
+    /// Asks the window to close.
     pub fn quit(&self) {
         self.hand.close(self.window);
-        let started = Instant::now();
-        while started.elapsed() < Duration::from_secs(2) {
-            let state = self.state();
-            if state["asked"] == true {
-                let [x, y, width, height] = self.place("lose");
-                self.hand.click([x + 0.5 * width, y + 0.5 * height]);
-                return;
-            }
-            std::thread::sleep(Duration::from_millis(20));
-        }
     }
 
-    /// Waits for the end: the exit code, and what it said.
+    /// Waits for the end: the exit code, and what it said. Where there is a question before it, what was changed is lost.
     pub fn end(mut self) -> (Option<i32>, String) {
         let started = Instant::now();
-        while self
-            .program
-            .try_wait()
-            .expect("it can be waited for")
-            .is_none()
-        {
+        while self.runs() {
             if started.elapsed() > PATIENCE {
                 let _ = self.program.kill();
-                panic!("the program does not end");
+                panic!("the program does not end: {:#}", self.state());
             }
-            std::thread::sleep(Duration::from_millis(20));
+            let state = self.state();
+            if state["asked"] == true && state["places"]["lose"].is_array() {
+                let [x, y, width, height] = self.place("lose");
+                self.hand.click([x + 0.5 * width, y + 0.5 * height]);
+            }
+            std::thread::sleep(Duration::from_millis(50));
         }
         let output = self.program.wait_with_output().expect("it has ended");
         let words = String::from_utf8_lossy(&output.stderr).into_owned();
         (output.status.code(), words)
+    }
+
+    /// MiB that it has in memory.
+    pub fn memory(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.program.id()));
+        let status = status.expect("it runs");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        let kib = line.and_then(|rest| rest.trim().split(' ').next()?.parse::<u64>().ok());
+        kib.expect("the system tells") / 1024
     }
 
     /// Whether it still runs.

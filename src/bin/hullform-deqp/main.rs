@@ -51,7 +51,13 @@ fn run(options: &Options) -> Result<bool> {
 fn be_worker(options: &Options) -> Result<()> {
     let context = Context::new(options.settings(), Vec::new());
     let input = BufReader::new(io::stdin());
-    let worked = work(&context, &Registry::suite(), input, io::stdout());
+    let worked = work(
+        &context,
+        &Registry::suite(),
+        input,
+        io::stdout(),
+        |_, _, _| (),
+    );
     worked.map_err(|source| hullform::Error::File {
         path: "the runner's pipe".into(),
         source,

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use glam::{Mat4, Vec3};
+use hullform::gpu::Metric;
 use hullform::method::{DepthTags, Outline};
 
 /// What depth tags go by.
@@ -69,18 +70,12 @@ impl Adaptive {
         seen: Seen,
     ) -> hullform::Result<DepthTags> {
         match self {
-            Adaptive::Distance(near) => {
-                let distances = vertices.iter().map(|vertex| vertex.distance(seen.eye));
-                let nearest = distances.fold(f32::INFINITY, f32::min);
-                let near = near.map_or(nearest, |near| (near / seen.scale) as f32);
-                let near = near.clamp(f32::MIN_POSITIVE, f32::MAX);
-                Ok(DepthTags::by_distance(
-                    vertices,
-                    seen.eye,
-                    near,
-                    level.log2(),
-                ))
-            }
+            Adaptive::Distance(near) => Ok(DepthTags::by_distance(
+                vertices,
+                seen.eye,
+                full_up_to(near, vertices, seen),
+                level.log2(),
+            )),
             Adaptive::Screen(pixels) => {
                 let clip = seen.clip_from_model.to_cols_array_2d();
                 DepthTags::by_screen(outline, vertices, clip, seen.size, pixels)
@@ -88,6 +83,32 @@ impl Adaptive {
             Adaptive::Curvature(degrees) => DepthTags::by_curvature(outline, vertices, degrees),
         }
     }
+
+    /// The same in a picture whose pixels are drawn as squares of so many.
+    pub fn scaled(self, factor: f32) -> Adaptive {
+        match self {
+            Adaptive::Screen(pixels) => Adaptive::Screen(factor * pixels),
+            other => other,
+        }
+    }
+
+    /// What the device goes by, of control vertices in local units.
+    pub fn metric(self, vertices: &[Vec3], seen: Seen) -> Metric {
+        let Seen { size, .. } = seen;
+        match self {
+            Adaptive::Distance(near) => Metric::Distance(full_up_to(near, vertices, seen)),
+            Adaptive::Screen(pixels) => Metric::Screen { pixels, size },
+            Adaptive::Curvature(degrees) => Metric::Curvature(degrees),
+        }
+    }
+}
+
+/// Up to where the level is full, in local units: so many units of the model, or where its nearest vertex is.
+fn full_up_to(near: Option<f64>, vertices: &[Vec3], seen: Seen) -> f32 {
+    let distances = vertices.iter().map(|vertex| vertex.distance(seen.eye));
+    let nearest = distances.fold(f32::INFINITY, f32::min);
+    let near = near.map_or(nearest, |near| (near / seen.scale) as f32);
+    near.clamp(f32::MIN_POSITIVE, f32::MAX)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use hullform::plan::database::{FileState, GREATEST_BYTES, Kind};
 use hullform::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Options of `db`.
 #[derive(Args)]
@@ -46,8 +46,8 @@ pub fn remember(global: &Global) {
 ///
 /// # Errors
 /// As [`Database::open`], of a file that was asked for; where the usual one cannot be had, plans are kept in memory.
-pub fn database() -> Result<&'static Database> {
-    static OPENED: OnceLock<Database> = OnceLock::new();
+pub fn database() -> Result<&'static Arc<Database>> {
+    static OPENED: OnceLock<Arc<Database>> = OnceLock::new();
     if let Some(opened) = OPENED.get() {
         return Ok(opened);
     }
@@ -62,7 +62,7 @@ pub fn database() -> Result<&'static Database> {
             })
         }),
     };
-    Ok(OPENED.get_or_init(|| database))
+    Ok(OPENED.get_or_init(|| Arc::new(database)))
 }
 
 /// Where the database is unless it is said.

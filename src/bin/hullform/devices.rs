@@ -97,6 +97,7 @@ fn as_json(device: &DeviceInfo, global: &Global) -> Value {
         "missing": device.missing,
         "optional": {
             "fill_mode_non_solid": optional.fill_mode_non_solid,
+            "wide_lines": optional.wide_lines,
             "pipeline_statistics_query": optional.pipeline_statistics_query,
             "sample_rate_shading": optional.sample_rate_shading,
             "maintenance4": optional.maintenance4,

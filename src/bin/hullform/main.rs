@@ -7,10 +7,12 @@ mod camera;
 mod capture;
 mod compare;
 mod db;
+mod deciding;
 mod devices;
 mod drawing;
 mod evaluation;
 mod eye;
+mod figures;
 mod framing;
 mod gpu;
 mod interrupt;
@@ -60,6 +62,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Measure what frames cost, in time and in work
     Bench(bench::Arguments),
+    /// Make the papers' tables and figures again, with a verdict on each
+    Figures(figures::Arguments),
     /// Tell how the faces of a model are planned
     Plan(plan::Arguments),
     /// Look after the file that plans are kept in
@@ -89,6 +93,7 @@ fn main() -> ExitCode {
             model::named(Some(&arguments.model), compare::run(arguments, global))
         }
         Command::Bench(arguments) => bench::run(arguments, global),
+        Command::Figures(arguments) => figures::run(arguments, global),
         Command::Plan(arguments) => {
             model::named(Some(&arguments.model), plan::run(arguments, global))
         }

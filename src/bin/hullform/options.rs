@@ -1,5 +1,6 @@
 //! Options that several subcommands share, and how their values are read.
 
+mod culling;
 mod standpoint;
 mod steps;
 
@@ -16,6 +17,7 @@ use hullform::method::{
 use std::path::PathBuf;
 use std::str::FromStr;
 
+pub use culling::Culling;
 pub use standpoint::{Cull, Standpoint};
 pub use steps::{Backend, Residence, Steps};
 
@@ -186,9 +188,9 @@ pub struct Cut {
     method: Option<String>,
     #[command(flatten)]
     steps: Steps,
-    /// Level by depth tags of the control vertices, up to --level: `distance[:UNITS]` (halves with the distance from the eye, beyond the
+    /// Levels of their own for edges, up to --level: `distance[:UNITS]` (halves with the distance from the eye, beyond the
     /// nearest vertex or so many units), `screen[:PIXELS]` (segments of at most 8 pixels, or so many), `curvature[:DEGREES]` (normals
-    /// turn by at most 5 degrees a segment, or so many)
+    /// turn by at most 5 degrees a segment, or so many). `render` has the device decide, but with other back-ends or --slots host
     #[arg(long, value_name = "HOW")]
     adaptive: Option<Adaptive>,
     #[command(flatten)]

@@ -1,6 +1,13 @@
 //! `hullform render`: a picture of a model.
 
+mod shading;
+mod statistics;
+
+pub use shading::Shading;
+
+use crate::adaptive::{Adaptive, Seen};
 use crate::camera::{Camera, View};
+use crate::deciding::Wanted;
 use crate::drawing::{self, Drawing};
 use crate::eye::{Eye, Sphere};
 use crate::framing::{Framed, Subject};
@@ -8,20 +15,21 @@ use crate::gpu::Gpu;
 use crate::options::{self, Chosen, Cutting, Global, Size};
 use crate::output::{self, Contents, Format, picture, png, wrote};
 use crate::{model, print, print_json, progress};
-use clap::{Args, ValueEnum};
-use hullform::gpu::{self, DrawList, Fill, Slots, SurfaceOptions};
+use clap::Args;
+use hullform::ash::vk;
+use hullform::gpu::{self, Decides, Decision, DrawList, Fill, Residence, Slots, SurfaceOptions};
 use hullform::host::{Area, Bench, Encoding, OffscreenTarget, Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::PathBuf;
 use std::time::Instant;
 
 /// Samples a pixel.
 const SAMPLES: u32 = 4;
 /// Pixels are drawn as squares of so many, where the device's limits allow, and averaged.
-const SUPERSAMPLING: u32 = 2;
+pub const SUPERSAMPLING: u32 = 2;
 /// Nothing: the background comes when the picture is composed.
 pub const CLEAR: [f32; 4] = [0.0; 4];
 
@@ -50,9 +58,10 @@ pub struct Arguments {
     sight: options::Sight,
     #[command(flatten)]
     standpoint: options::Standpoint,
-    /// Leave out triangles that are seen from behind, or from the front
-    #[arg(long, value_name = "WHICH", default_value = "none")]
-    cull: options::Cull,
+    /// Leave out what is not seen, one or several: `frustum` patches outside of the picture, `back` triangles that are seen from behind and patches
+    /// that show nothing else, `small` patches between samples, `all` of these; `front` triangles that are seen from the front; or `none`
+    #[arg(long, value_name = "A,B,...", default_value = "none")]
+    cull: options::Culling,
     /// Move each vertex whose position has an odd number of bits: where faces differ on an edge, a hole opens
     #[arg(long)]
     amplify_cracks: bool,
@@ -78,29 +87,6 @@ impl Arguments {
     }
 }
 
-/// What the colours of a picture mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Shading {
-    /// A lit surface
-    Lit,
-    /// The normal's direction
-    Normal,
-    /// A colour for each patch
-    Patch,
-    /// The kind of node that a point was evaluated in
-    Node,
-    /// The valences of the face's vertices
-    Valence,
-    /// The tess levels of patches and their edges
-    Level,
-    /// Squares of texture coordinates, eight a unit
-    Checker,
-    /// How deep in the quadtree a point was evaluated
-    Depth,
-    /// The height of the displacement
-    Height,
-}
-
 /// Everything to be drawn.
 struct Scene<'a> {
     model: &'a Model,
@@ -110,11 +96,13 @@ struct Scene<'a> {
     shading: Shading,
     displacement: Displacement,
     wireframe: bool,
-    cull: options::Cull,
+    culling: options::Culling,
     amplify_cracks: bool,
     ring_bytes: u64,
     slots: Slots,
     points: options::Points,
+    /// Pixels are drawn as squares of so many.
+    factor: u32,
     load_seconds: f64,
 }
 
@@ -172,6 +160,7 @@ pub fn draw_picture(
             remedy: "choose another device or leave it out".into(),
         });
     }
+    check_culling(gpu, arguments)?;
     let (mut bench, factor) = bench(gpu, width, height)?;
     let scene = Scene {
         model,
@@ -184,16 +173,44 @@ pub fn draw_picture(
         shading: arguments.shading,
         displacement: bumps(model, arguments.displace),
         wireframe: arguments.wireframe,
-        cull: arguments.cull,
+        culling: arguments.cull,
         amplify_cracks: arguments.amplify_cracks,
         ring_bytes: global.ring_bytes,
         slots: drawing::slots(global.slots),
         points: global.points,
+        factor,
         load_seconds,
     };
-    let stats = progress::during("drawing", |_| draw(gpu, &mut bench, factor, &scene))?;
+    let stats = progress::during("drawing", |_| draw(gpu, &mut bench, &scene))?;
     let (pixels, area) = (bench.target().read_pixels(), bench.target().area());
     Ok((picture::compose(pixels, area, width, height, factor), stats))
+}
+
+/// # Errors
+/// [`Error::Option`] for patches that are left out where they might be seen.
+fn check_culling(gpu: &Gpu, arguments: &Arguments) -> Result<()> {
+    let culling = arguments.cull;
+    let standard = gpu.device.limits().standard_sample_locations != 0;
+    let (problem, remedy) = match () {
+        () if culling.small && arguments.wireframe => (
+            "lines are wider than what is between samples",
+            "leave out small, or --wireframe",
+        ),
+        () if culling.small && !standard => (
+            "the device has its samples in places of its own",
+            "leave out small, or choose another device",
+        ),
+        () if culling.needs_decisions() && arguments.amplify_cracks => (
+            "vertices that are moved may come into the picture",
+            "leave out frustum and small, or --amplify-cracks",
+        ),
+        () => return Ok(()),
+    };
+    Err(Error::Option {
+        option: "--cull",
+        problem: problem.into(),
+        remedy: remedy.into(),
+    })
 }
 
 /// A bench for a picture, and the factor by which its target is larger.
@@ -239,14 +256,15 @@ pub fn draw_lit(
         shading: Shading::Lit,
         displacement: Displacement::default(),
         wireframe: false,
-        cull: options::Cull::None,
+        culling: options::Culling::default(),
         amplify_cracks: false,
         ring_bytes: global.ring_bytes,
         slots: drawing::slots(global.slots),
         points: global.points,
+        factor,
         load_seconds: 0.0,
     };
-    draw(gpu, bench, factor, &scene).map(drop)
+    draw(gpu, bench, &scene).map(drop)
 }
 
 fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
@@ -258,7 +276,7 @@ fn report(arguments: &Arguments, global: &Global, stats: &Value) -> Result<()> {
 }
 
 /// Draws `scene` into the target of `bench`, copies the picture to the host, and returns the statistics.
-fn draw(gpu: &Gpu, bench: &mut Bench, factor: u32, scene: &Scene<'_>) -> Result<Value> {
+fn draw(gpu: &Gpu, bench: &mut Bench, scene: &Scene<'_>) -> Result<Value> {
     let started = Instant::now();
     let prepared = drawing::prepare(scene.model, scene.chosen)?;
     let plan_seconds = started.elapsed().as_secs_f64();
@@ -269,20 +287,21 @@ fn draw(gpu: &Gpu, bench: &mut Bench, factor: u32, scene: &Scene<'_>) -> Result<
         width,
         height,
     } = seen.area;
+    let factor = scene.factor;
     bench.target_mut().crop(Area {
         x: x * factor,
         y: y * factor,
         width: width * factor,
         height: height * factor,
     })?;
-    let draw = |prepared, slots| draw_with(gpu, bench, scene, prepared, plan_seconds, &seen, slots);
-    let stats = draw(prepared, scene.slots)?;
+    let draw = |prepared, again| draw_with(gpu, bench, scene, prepared, plan_seconds, &seen, again);
+    let stats = draw(prepared, false)?;
     if stats["ring"]["overflows"] == 0 {
         return Ok(stats);
     }
-    // Control shaders ran more often than once a patch and took more than their share. Slots from the host do not depend on that.
-    tracing::warn!("the scratch ring overflowed; drawing again with slots from the host");
-    draw(drawing::prepare(scene.model, scene.chosen)?, Slots::Host)
+    // Control shaders ran more often than once a patch and took more than their share.
+    tracing::warn!("the scratch ring overflowed; drawing again without slots by counters");
+    draw(drawing::prepare(scene.model, scene.chosen)?, true)
 }
 
 impl Scene<'_> {
@@ -334,6 +353,29 @@ impl Scene<'_> {
         all
     }
 
+    /// What the device decides by, where it does.
+    fn decision(&self, bench: &Bench, wanted: Wanted, view: &View) -> Decision {
+        let vk::Extent2D { width, height } = bench.target().extent();
+        let seen = Seen {
+            clip_from_model: view.clip_from_model,
+            eye: view.eye,
+            scale: self.model.placement().scale,
+            size: [width, height].map(|side| side as f32),
+        };
+        // In pixels that are drawn.
+        let scaled = |adaptive: Adaptive| adaptive.scaled(self.factor as f32);
+        let wanted = Wanted {
+            adaptive: wanted.adaptive.map(scaled),
+            ..wanted
+        };
+        let culled = wanted.decision(&self.model.positions(), seen, SAMPLES);
+        Decision {
+            // Vertices that are moved may turn triangles.
+            back: culled.back && !self.amplify_cracks,
+            ..culled
+        }
+    }
+
     /// What becomes of its triangles.
     fn solid(&self) -> Fill {
         Fill::Solid(self.shading.into())
@@ -347,34 +389,51 @@ fn draw_with(
     prepared: Prepared,
     plan_seconds: f64,
     Framed { view, tags, .. }: &Framed,
-    slots: Slots,
+    again: bool,
 ) -> Result<Value> {
     let Cutting {
         cut,
         backend,
         residence,
-        ..
+        adaptive,
     } = scene.cutting;
+    let wanted = Wanted {
+        adaptive,
+        culling: scene.culling,
+    };
+    let decides = wanted.decides(backend, scene.slots)?;
+    // Slots from the host do not depend on who runs how often, and a cache has none.
+    let (slots, residence) = match decides {
+        Decides::Host if again => (Slots::Host, residence),
+        Decides::Device if again => (scene.slots, Residence::Cache),
+        _ => (scene.slots, residence),
+    };
+    let rounds = if scene.wireframe { 2 } else { 1 };
     let options = SurfaceOptions {
         backend,
         residence,
         ring_bytes: scene.ring_bytes,
         slots,
-        count_vertices: true,
+        decides,
+        count_vertices: decides == Decides::Host,
         greatest_level: cut.level,
-        rounds: if scene.wireframe { 2 } else { 1 },
+        rounds,
+        views: rounds,
         amplify_cracks: scene.amplify_cracks,
         ..Default::default()
     };
     let mut drawing = Drawing::new(gpu, bench, scene.model, prepared, options, scene.points)?;
-    drawing.tags = tags.clone();
+    match decides {
+        Decides::Host => drawing.tags = tags.clone(),
+        Decides::Device => drawing.decision = scene.decision(bench, wanted, view),
+    }
     let list = drawing.draw_list(cut)?;
     let started = Instant::now();
     let mut fills = vec![scene.solid()];
     fills.extend(scene.wireframe.then_some(Fill::Lines));
     let pipelines = fills.into_iter().map(|fill| {
         let style = Style {
-            cull: scene.cull.mode(),
+            cull: scene.culling.triangles.mode(),
             ..Style::new(options, cut.spacing, fill)
         };
         bench.pipelines(drawing.prepared(), style)
@@ -393,61 +452,24 @@ fn draw_with(
     // Patches without room in the ring are known to be missing: see `draw`.
     if drawing.surface().counters()?.overflows == 0 {
         let drawn = (0..pipelines.len()).flat_map(|_| list.batches());
-        drawing.surface().arrival(drawn)?.check()?;
+        match decides {
+            Decides::Host => drawing.surface().arrival(drawn)?.check()?,
+            Decides::Device => check_arrival(&drawing, &list, counted)?,
+        }
     }
     let seconds = [plan_seconds, first_frame];
-    statistics(gpu, scene, &drawing, &list, &counted, seconds)
+    statistics::of(gpu, scene, &drawing, &list, counted, seconds)
 }
 
-/// What `--stats` writes.
-fn statistics(
-    gpu: &Gpu,
-    scene: &Scene<'_>,
-    drawing: &Drawing<'_>,
-    list: &DrawList,
-    counted: &Option<[u64; 3]>,
-    [plan_seconds, first_frame]: [f64; 2],
-) -> Result<Value> {
-    let info = gpu.device.info();
-    let plans = drawing.prepared().plans.clone().unwrap_or_default();
-    let patches: usize = drawing
-        .prepared()
-        .passes
-        .iter()
-        .map(|pass| pass.patches.len())
-        .sum();
-    let ring_batches = list.batches().filter(|batch| batch.points() > 0).count();
-    let counters = drawing.surface().counters()?;
-    Ok(json!({
-        "device": info.name,
-        "driver": format!("{} {}", info.driver.name, info.driver.info),
-        "method": drawing.prepared().method,
-        "level": scene.cutting.cut.level,
-        "backend": scene.cutting.backend.name(),
-        "residence": scene.cutting.residence.name(),
-        "spacing": scene.cutting.cut.spacing.name(),
-        "patches": { "total": patches, "regular": plans.regular, "irregular": plans.irregular },
-        "plans": plans.plans,
-        "draws": list.batches().map(|batch| batch.draws().len()).sum::<usize>(),
-        "batches": ring_batches,
-        "workarounds": gpu.workarounds.iter().map(|row| row.name).collect::<Vec<_>>(),
-        "pipeline_statistics": counted.map(|[patches, evaluations, clipping]| json!({
-            "control_shader_patches": patches,
-            "evaluation_invocations": evaluations,
-            "clipping_primitives": clipping,
-        })),
-        "ring": {
-            "bytes": scene.ring_bytes,
-            "points_computed": counters.points,
-            "overflows": counters.overflows,
-        },
-        "seconds": {
-            "load": scene.load_seconds,
-            "plan": plan_seconds,
-            "upload": drawing.upload_seconds,
-            "first_frame": first_frame,
-        },
-    }))
+/// Refuses a picture of which the device lost something, where it counts what it evaluates. The first round counts.
+fn check_arrival(drawing: &Drawing<'_>, list: &DrawList, counted: Option<[u64; 3]>) -> Result<()> {
+    let predicted = drawing.surface().outcome(list, 0..1)?.vertices;
+    match counted {
+        Some([_, came, _]) if came < predicted => Err(Error::Lost {
+            what: format!("{} of {predicted} vertices", predicted - came),
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// The view as the library takes it.
@@ -465,21 +487,5 @@ pub fn bumps(model: &Model, share: f32) -> Displacement {
     Displacement {
         height: share * diagonal,
         frequency: 30.0 / diagonal.max(f32::MIN_POSITIVE),
-    }
-}
-
-impl From<Shading> for gpu::Shading {
-    fn from(shading: Shading) -> gpu::Shading {
-        match shading {
-            Shading::Lit => gpu::Shading::Lit,
-            Shading::Normal => gpu::Shading::Normal,
-            Shading::Patch => gpu::Shading::Patch,
-            Shading::Node => gpu::Shading::Node,
-            Shading::Valence => gpu::Shading::Valence,
-            Shading::Level => gpu::Shading::Level,
-            Shading::Checker => gpu::Shading::Checker,
-            Shading::Depth => gpu::Shading::Depth,
-            Shading::Height => gpu::Shading::Height,
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! `hullform verify`: the conformance suite.
 
 mod files;
+mod kept;
 mod known;
 
 use crate::drawing;
@@ -55,6 +56,9 @@ pub struct Arguments {
     /// Write what went wrong as deqp-runner's lists: NAME-fails.txt, NAME-flakes.txt, NAME-skips.txt
     #[arg(long, value_name = "NAME")]
     export_expectations: Option<String>,
+    /// Keep what cases that do not pass drew last and what they measured: FOLDER/NAME-K.png, the last picture first, and FOLDER/NAME.txt
+    #[arg(long, value_name = "FOLDER")]
+    keep: Option<PathBuf>,
     /// Run each case so often; different results are a flake
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
@@ -150,6 +154,14 @@ fn be_worker(
         registry,
         BufReader::new(io::stdin()),
         io::stdout(),
+        |name, finding, drawn| {
+            let folder = arguments.keep.as_deref();
+            let kept = folder.map_or(Ok(()), |folder| kept::keep(folder, name, finding, drawn));
+            // The runner tells the last words of a worker that ends.
+            if let Err(error) = kept {
+                eprint_line(&format!("hullform: {error}"));
+            }
+        },
     );
     worked.map_err(|source| Error::File {
         path: "the runner's pipe".into(),
@@ -179,6 +191,9 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
         model::load(Some(model), &arguments.shape)?;
     }
     let files = Files::create(arguments)?;
+    if let Some(folder) = &arguments.keep {
+        kept::prepare(folder)?;
+    }
     let worker = worker(arguments, global)?;
     let mut runner = Runner {
         worker: &|| command(&worker),
@@ -283,8 +298,11 @@ fn worker(arguments: &Arguments, global: &Global) -> Result<Vec<OsString>> {
             .map(|fault| format!("--fault={fault}")),
     );
     words.extend(arguments.shape.words());
-    words.push("--".into());
     let mut words: Vec<OsString> = words.into_iter().map(Into::into).collect();
+    if let Some(folder) = &arguments.keep {
+        words.extend(["--keep".into(), folder.clone().into_os_string()]);
+    }
+    words.push("--".into());
     words.insert(0, own_program()?.into());
     words.extend(
         arguments

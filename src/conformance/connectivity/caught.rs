@@ -64,7 +64,7 @@ pub fn primitives(context: &Context, modes: Modes, table: &[TessLevels]) -> Resu
 }
 
 /// More primitives than a patch of these levels has.
-fn most(levels: &TessLevels) -> u32 {
+pub fn most(levels: &TessLevels) -> u32 {
     let all = levels.outer.iter().chain(&levels.inner);
     let greatest = all.fold(2.0, |a: f32, &b| a.max(b));
     3 * (greatest.ceil() as u32 + 2).pow(2)

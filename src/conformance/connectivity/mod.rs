@@ -1,9 +1,11 @@
-//! Group `connectivity`: how the tessellator joins its vertices, as a geometry shader sees it.
+//! Group `connectivity`: how the tessellator joins its vertices, as a geometry shader sees it, as transform feedback captures it, and as a picture.
 //!
 //! Which diagonal a strip takes is the implementation's. That triangles cover the domain and do not overlap, how many there are, and what they may
 //! not depend on, is the specification's. A seeded fault loses a triangle, or gives the patch that is compared with another inner level.
 
 mod caught;
+mod feedback;
+mod fill;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -366,7 +368,9 @@ type Rule = (
     fn(&Context, Subject) -> Result<Finding>,
 );
 
-const RULES: [Rule; 6] = [
+const FEEDBACK: &str = "Vulkan, Transform Feedback; Transform Feedback Queries";
+
+const RULES: [Rule; 9] = [
     (
         "cover",
         "triangles cover the domain, all in the same order, and do not overlap",
@@ -403,7 +407,29 @@ const RULES: [Rule; 6] = [
         INVARIANCE,
         beside,
     ),
+    (
+        "fill",
+        "each pixel of the domain is drawn by one triangle",
+        "Vulkan, Basic Polygon Rasterization: a sample on a shared edge belongs to one polygon",
+        |context, subject| fill::once(context, subject.modes, &subject.table.levels(context)),
+    ),
+    FEEDBACK_SAME,
+    FEEDBACK_FULL,
 ];
+
+const FEEDBACK_SAME: Rule = (
+    "feedback",
+    "transform feedback captures what a geometry shader sees, and its query counts that",
+    FEEDBACK,
+    |context, subject| feedback::same(context, subject.modes, &subject.table.levels(context)),
+);
+
+const FEEDBACK_FULL: Rule = (
+    "feedback_room",
+    "where there is no room, whole primitives are captured as far as they fit, and all are counted",
+    FEEDBACK,
+    |context, subject| feedback::full(context, subject.modes, &subject.table.levels(context)),
+);
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -434,6 +460,8 @@ fn cases() -> Vec<Case> {
         }
         let rule = "lines are spaced equally, and each is joined from end to end";
         add(("lines", rule, TESSELLATOR, lines), Domain::Isolines);
+        add(FEEDBACK_SAME, Domain::Isolines);
+        add(FEEDBACK_FULL, Domain::Isolines);
     }
     cases
 }

@@ -1,6 +1,6 @@
 //! Commands over the buffers and pipelines of [`Raw`].
 
-use ash::vk;
+use ash::{ext, vk};
 
 use super::{Raw, STAGES};
 use crate::error::Result;
@@ -74,6 +74,14 @@ impl Recorder<'_> {
             device.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
             device.cmd_push_constants(self.cmd, layout, STAGES, 0, bytes);
         }
+    }
+
+    /// Says of how many control points patches are, for pipelines that leave it to draws.
+    pub fn patch_size(&self, points: u32) {
+        let instance = self.raw.device.instance().raw();
+        let functions = ext::extended_dynamic_state2::Device::new(instance, self.device);
+        // SAFETY: the device has the feature if it has pipelines that need it; the caller's number is one that devices have.
+        unsafe { functions.cmd_set_patch_control_points(self.cmd, points) };
     }
 
     /// A draw without indices.

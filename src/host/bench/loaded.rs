@@ -48,10 +48,10 @@ impl Bench {
         let (device, layout) = (self.device().raw(), self.layout());
         // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
         let surface = unsafe {
-            let allocator = &mut *self.device().allocator();
+            let memory = &mut self.device().memory();
             TessellatedSurface::new(
                 device,
-                allocator,
+                memory,
                 layout,
                 model,
                 prepared,
@@ -163,7 +163,7 @@ impl Loaded<'_> {
         // SAFETY: the upload has been waited for.
         unsafe {
             self.surface
-                .finish_upload(device.raw(), &mut device.allocator());
+                .finish_upload(device.raw(), &mut device.memory());
         }
         Ok(())
     }
@@ -206,9 +206,9 @@ impl Loaded<'_> {
     /// As [`TessellatedSurface::write_draws`].
     pub fn bring(&mut self, list: &DrawList) -> Result<()> {
         let device = self.bench.device();
-        let allocator = &mut device.allocator();
-        // SAFETY: device and allocator made the surface; every submission has been waited for.
-        unsafe { self.surface.write_draws(device.raw(), allocator, list) }
+        let memory = &mut device.memory();
+        // SAFETY: device and memory made the surface; every submission has been waited for.
+        unsafe { self.surface.write_draws(device.raw(), memory, list) }
     }
 
     /// Computes the control points that a list needs and no cache has, where they are cached: how many these are. In a submission of its own.
@@ -263,19 +263,27 @@ impl Loaded<'_> {
         after: impl FnOnce(vk::CommandBuffer),
     ) -> Result<Option<[u64; 3]>> {
         let target = self.bench.target();
-        // llvmpipe (Mesa 22.3.6) ends the process where a query of statistics comes behind a dispatch in the same submission.
         let query = self.bench.statistics.as_ref();
-        let query = query.filter(|_| self.decide_pipeline.is_none());
         let views = shots
             .iter()
             .flat_map(|shot| vec![shot.view; shot.instances as usize]);
         let views: Vec<View> = views.collect();
         let device = self.bench.device();
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-        device.submit(|cmd| unsafe {
+        let prepare = |cmd| unsafe {
             before(cmd);
             self.surface.cmd_prepare(device.raw(), cmd, &views)?;
-            self.cmd_decide(cmd, shots)?;
+            self.cmd_decide(cmd, shots)
+        };
+        // llvmpipe (Mesa 22.3.6) ends the process where a query of statistics comes behind a dispatch in the same submission.
+        let apart = query.is_some() && self.decide_pipeline.is_some();
+        let mut prepare = Some(prepare);
+        if let Some(prepare) = prepare.take_if(|_| apart) {
+            device.submit(prepare)?;
+        }
+        // SAFETY: as above.
+        device.submit(|cmd| unsafe {
+            prepare.map_or(Ok(()), |prepare| prepare(cmd))?;
             if let Some(query) = query {
                 query.cmd_reset(cmd);
             }

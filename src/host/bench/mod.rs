@@ -38,7 +38,7 @@ pub struct Bench {
 type Key = (Vec<&'static str>, Style);
 
 /// How surfaces are drawn, as far as pipelines go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
     /// Who cuts patches into triangles.
     pub backend: Backend,
@@ -52,6 +52,8 @@ pub struct Style {
     pub cull: vk::CullModeFlags,
     /// How depths are compared.
     pub compare: vk::CompareOp,
+    /// How wide lines are, in pixels; at most 1 where the device has no wider ones.
+    pub line_width: f32,
 }
 
 impl Style {
@@ -64,6 +66,7 @@ impl Style {
             fill,
             cull: vk::CullModeFlags::NONE,
             compare: vk::CompareOp::LESS_OR_EQUAL,
+            line_width: 1.0,
         }
     }
 
@@ -74,6 +77,7 @@ impl Style {
                 samples: target.samples(),
                 cull: self.cull,
                 compare: self.compare,
+                line_width: line_width(target.device(), self.line_width),
                 ..Target::render_pass(target.render_pass())
             },
             backend: self.backend,
@@ -83,6 +87,15 @@ impl Style {
             fragment: None,
             layout: None,
         }
+    }
+}
+
+/// The nearest to a width that a device draws lines of.
+fn line_width(device: &Device, wanted: f32) -> f32 {
+    let [_, greatest] = device.limits().line_width_range;
+    match device.info().support.optional.wide_lines {
+        true => wanted.min(greatest),
+        false => wanted.min(1.0),
     }
 }
 

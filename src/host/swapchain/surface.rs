@@ -4,7 +4,7 @@ use ash::{khr, vk};
 
 use crate::error::Result;
 use crate::gpu::failed;
-use crate::gpu::features::has_extension;
+use crate::gpu::features::extension::has_extension;
 use crate::host::instance::unavailable;
 use crate::host::{DeviceInfo, Instance};
 

@@ -34,10 +34,15 @@ pub struct Database {
     /// The weights of all plans.
     pool: SharedPool,
     file: Option<Mutex<PlanFile>>,
+    /// One whose plans are found here as well.
+    under: Option<Arc<Database>>,
 }
 
 /// So many plans are on their way at a time: before they share their weights they take several times the memory.
 const AT_A_TIME: usize = 1 << 9;
+
+/// The numbers of plans that are over those of another database begin here.
+const OVER: u32 = 1 << 31;
 
 /// Numbers of configurations.
 type Numbers = FxHashMap<Configuration, u32>;
@@ -101,7 +106,17 @@ impl Database {
             known: RwLock::default(),
             pool: SharedPool::default(),
             file: Some(Mutex::new(PlanFile::open(path.as_ref())?)),
+            under: None,
         })
+    }
+
+    /// One over another: it finds what that has, and keeps what is new for itself, as long as it lives. For what passes, as each sharpness that an edge
+    /// has while it is dragged: neither the other's memory nor its file grows by plans that nobody meets again.
+    pub fn over(under: Arc<Database>) -> Database {
+        Database {
+            under: Some(under),
+            ..Database::default()
+        }
     }
 
     /// How many plans were asked for so far.
@@ -125,11 +140,7 @@ impl Database {
         options: PlanOptions,
         configurations: &[&Configuration],
     ) -> Result<Vec<(u32, Arc<Entry>)>> {
-        let find = || -> Vec<Option<(u32, Arc<Entry>)>> {
-            let known = whole(self.known.read());
-            let all = configurations.iter();
-            all.map(|of| known.get(kind, options, of)).collect()
-        };
+        let find = || self.find(kind, options, configurations);
         let mut found = find();
         let mut seen = FxHashSet::default();
         let missing: Vec<Key> = found
@@ -150,6 +161,29 @@ impl Database {
         Ok(all.map(|found| found.expect("it was added")).collect())
     }
 
+    /// What is known of configurations.
+    fn find(
+        &self,
+        kind: Kind,
+        options: PlanOptions,
+        configurations: &[&Configuration],
+    ) -> Vec<Option<(u32, Arc<Entry>)>> {
+        let all = configurations.iter();
+        let known = whole(self.known.read());
+        let Some(under) = &self.under else {
+            return all.map(|of| known.get(kind, options, of)).collect();
+        };
+        // What was found here once has the same number again, even where the other has it by now.
+        let found = under.find(kind, options, configurations);
+        let own = |of: &Configuration| {
+            let (number, entry) = known.get(kind, options, of)?;
+            Some((number | OVER, entry))
+        };
+        all.zip(found)
+            .map(|(of, found)| own(of).or(found))
+            .collect()
+    }
+
     /// Reads or builds plans, and keeps them.
     fn add(&self, keys: Vec<Key>) -> Result<()> {
         let mut keys = keys.into_iter();
@@ -163,7 +197,8 @@ impl Database {
     }
 
     fn add_some(&self, keys: Vec<Key>) -> Result<()> {
-        let stored: Vec<Option<Vec<u32>>> = match &self.file {
+        let under = self.under.as_deref().unwrap_or(self);
+        let stored: Vec<Option<Vec<u32>>> = match &under.file {
             None => vec![None; keys.len()],
             Some(file) => {
                 let words: Vec<Vec<u32>> = keys.iter().map(words::of_key).collect();

@@ -1,5 +1,6 @@
 //! `hullform bench`: what a frame costs, by model, method, level and backend, in time and in work.
 
+mod against;
 mod plot;
 mod row;
 mod subject;
@@ -7,17 +8,20 @@ mod subject;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hullform::gpu::{Backend, Residence};
+use hullform::gpu::{Backend, Decides, Residence};
 use hullform::mesh::Model;
 use hullform::method::{METHODS, Method, Prepared, Reproduces, method};
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 
+use crate::adaptive::Adaptive;
+use crate::deciding::Wanted;
 use crate::drawing;
 use crate::gpu::Gpu;
-use crate::options::{self, Chosen, Global, Json};
+use crate::options::{self, Chosen, Global, Json, Size};
 use crate::output::{self, Contents};
 use crate::{model, print, print_json, progress};
+use against::Saved;
 use row::Row;
 use subject::Subject;
 
@@ -74,6 +78,20 @@ pub struct Arguments {
     /// How many instances each pass draws: all in one draw of a batch, but one by one where control points are in the ring
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1024))]
     instances: u32,
+    /// Levels of their own for edges, up to each of --levels, decided by the device in each frame: `distance[:UNITS]`, `screen[:PIXELS]` or
+    /// `curvature[:DEGREES]`, as for `render`
+    #[arg(long, value_name = "HOW")]
+    adaptive: Option<Adaptive>,
+    /// Leave patches out before anything of them is computed, one or several: `frustum` outside of the picture, `back` that show nothing but their
+    /// backs, `small` between samples, one a pixel, `all` of these, or `none`
+    #[arg(long, value_name = "A,B,...", default_value = "none")]
+    cull: options::Culling,
+    /// Size, in pixels, of the picture that --adaptive and --cull go by
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    size: Size,
+    /// From where they see it
+    #[command(flatten)]
+    sight: options::Sight,
     /// Frames that are measured of each, all in turn; one more warms up
     #[arg(long, value_name = "N", default_value = "20", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     frames: u32,
@@ -86,15 +104,53 @@ pub struct Arguments {
     /// Write a picture of them: times over levels
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// Tell what changed since a run that was saved with --json
+    #[arg(long, value_name = "OLD.json")]
+    against: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// What is to be decided about patches.
+    fn wanted(&self) -> Wanted {
+        Wanted {
+            adaptive: self.adaptive,
+            culling: self.cull,
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Option`] for decisions that nobody takes.
+    fn check(&self, global: &Global) -> Result<()> {
+        let slots = drawing::slots(global.slots);
+        let wanted = self.wanted();
+        let decides = |backend| wanted.decides(backend, slots);
+        let all: Result<Vec<Decides>> = self.backend.iter().map(|&b| decides(b.into())).collect();
+        if wanted.is_anything() && all?.contains(&Decides::Host) {
+            return Err(Error::Option {
+                option: if self.adaptive.is_some() {
+                    "--adaptive"
+                } else {
+                    "--cull"
+                },
+                problem: "the device decides for the tessellator alone, and with slots by counters"
+                    .into(),
+                remedy: "leave out --backend and --slots, or decisions".into(),
+            });
+        }
+        Ok(())
+    }
 }
 
 /// Measures, prints a table, and writes what is asked for.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    arguments.check(global)?;
     let reads: Vec<&Path> = arguments
         .models
         .iter()
         .filter_map(|path| model::file(Some(path)))
+        .chain(arguments.against.as_deref())
         .collect();
+    let saved = arguments.against.as_deref().map(Saved::read).transpose()?;
     let json = match &arguments.json {
         Some(Json::File(path)) => Some(("--json", path.as_path())),
         _ => None,
@@ -112,11 +168,15 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     }
     row::set_ratios(&mut rows);
     let info = gpu.device.info();
-    let report = json!({
+    let mut report = json!({
         "device": info.name,
         "driver": format!("{} {}", info.driver.name, info.driver.info),
         "rows": rows.iter().map(Row::json).collect::<Vec<Value>>(),
     });
+    let compared = saved.map(|saved| saved.compared(&report));
+    if let Some(compared) = &compared {
+        report["against"] = compared.lines().collect();
+    }
     let title = format!("{}, {} {}", info.name, info.driver.name, info.driver.info);
     gpu.finish()?;
     let as_json: &Contents = &|out| writeln!(out, "{report:#}");
@@ -133,7 +193,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     if arguments.json == Some(Json::Print) || global.prints_json() {
         print_json(&report)
     } else {
-        print(&row::as_text(&title, &rows))
+        let table = row::as_text(&title, &rows);
+        let texts: Vec<String> = [table].into_iter().chain(compared).collect();
+        print(&texts.join("\n"))
     }
 }
 

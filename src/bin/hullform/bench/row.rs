@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use hullform::gpu::Outcome;
 use serde_json::{Map, Value, json};
 
 use super::yardstick;
@@ -9,8 +10,6 @@ use super::yardstick;
 /// The work of a frame, counted.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Work {
-    /// Patches drawn, over all passes.
-    pub patches: u64,
     /// Runs of the evaluating shader.
     pub evaluations: u64,
     /// Control points that were computed: by control shaders, or into a cache.
@@ -21,6 +20,8 @@ pub struct Work {
     pub draws: u64,
     /// Barriers between batches.
     pub barriers: u64,
+    /// What was decided about patches, over all passes.
+    pub decided: Outcome,
 }
 
 /// A row of the result.
@@ -32,6 +33,8 @@ pub struct Row {
     pub backend: &'static str,
     pub residence: &'static str,
     pub is_static: bool,
+    /// Who decides about patches.
+    pub decides: &'static str,
     pub passes: u32,
     pub instances: u32,
     /// Seconds of all threads of the process for each frame; empty where the system does not tell.
@@ -84,7 +87,12 @@ impl Row {
             "gpu_ms": milliseconds(least(&self.gpu)),
             "gpu_ms_median": milliseconds(median(&self.gpu)),
             "ratio_to_flat": self.ratio_to_flat,
-            "patches": self.work.patches,
+            "decides": self.decides,
+            "patches": self.work.decided.drawn,
+            "culled_frustum": self.work.decided.frustum,
+            "culled_back": self.work.decided.back,
+            "culled_small": self.work.decided.small,
+            "triangles": self.work.decided.triangles,
             "evaluation_invocations": self.work.evaluations,
             "points_computed": self.work.points,
             "multiply_adds": self.work.products,
@@ -186,7 +194,7 @@ pub fn as_text(title: &str, rows: &[Row]) -> String {
             number(milliseconds(median(&row.cpu))),
             number(milliseconds(least(&row.gpu))),
             number(row.ratio_to_flat),
-            row.work.patches,
+            row.work.decided.drawn,
             row.work.evaluations,
             row.work.points,
             row.work.products,
@@ -209,6 +217,7 @@ mod tests {
             backend: "tessellator",
             residence: "ring",
             is_static: false,
+            decides: "host",
             passes: 1,
             instances: 1,
             cpu: cpu.to_vec(),

@@ -3,17 +3,20 @@
 use std::path::Path;
 use std::rc::Rc;
 
-use hullform::gpu::{Backend, Cut, DrawList, Fill, Pipelines, Residence, SurfaceOptions};
+use hullform::gpu::{
+    Backend, Cut, Decides, DrawList, Fill, Outcome, Pipelines, Residence, SurfaceOptions, View,
+};
 use hullform::host::{Bench, Owned, Shot, Style, TimestampQuery};
 use hullform::mesh::Model;
-use hullform::method::Prepared;
+use hullform::method::{Displacement, Prepared};
 use hullform::{Error, Result};
 
 use super::Arguments;
 use super::row::{Row, Work};
+use crate::adaptive::Seen;
 use crate::drawing::{self, Drawing};
 use crate::gpu::Gpu;
-use crate::options::Global;
+use crate::options::{Global, Size};
 
 /// What is drawn at several levels, each with its times. Triangles are made and thrown away: what they cover costs all methods the same.
 pub struct Subject<'a> {
@@ -29,6 +32,7 @@ pub struct Subject<'a> {
     device_bytes: u64,
     drawing: Drawing<'a>,
     pipelines: Rc<Owned<Pipelines>>,
+    view: View,
     clock: Option<TimestampQuery>,
     /// Whether the device tells if frames are whole. Elsewhere the shaders do, and all methods bear an atomic operation a vertex.
     device_counts: bool,
@@ -80,20 +84,35 @@ impl<'a> Subject<'a> {
         let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
         let device_counts = gpu.device.info().support.optional.pipeline_statistics_query
             && backend == Backend::Tessellator;
+        let slots = drawing::slots(global.slots);
+        let decides = arguments.wanted().decides(backend, slots)?;
         let options = SurfaceOptions {
             backend,
             residence,
-            count_vertices: !device_counts,
+            decides,
+            count_vertices: !device_counts && decides == Decides::Host,
             ring_bytes: global.ring_bytes,
-            slots: drawing::slots(global.slots),
+            slots,
             greatest_level: greatest,
             rounds: arguments.passes * instances.draws,
             views: instances.a_draw,
             ..SurfaceOptions::default()
         };
         let before = gpu.device.allocated_bytes();
-        let drawing = Drawing::new(gpu, bench, model, prepared, options, global.points)?;
+        let mut drawing = Drawing::new(gpu, bench, model, prepared, options, global.points)?;
         let device_bytes = gpu.device.allocated_bytes() - before;
+        let view = match decides {
+            Decides::Host => drawing::nowhere(),
+            Decides::Device => {
+                let seen = seen(model, arguments);
+                drawing.decision = arguments.wanted().decision(&model.positions(), seen, 1);
+                View {
+                    clip_from_model: seen.clip_from_model.to_cols_array_2d(),
+                    eye: seen.eye.to_array(),
+                    displacement: Displacement::default(),
+                }
+            }
+        };
         let spacing = arguments.spacing.into();
         let style = Style::new(options, spacing, Fill::Discard);
         let list = |&level: &f32| {
@@ -121,6 +140,7 @@ impl<'a> Subject<'a> {
             },
             device_bytes,
             pipelines: bench.pipelines(drawing.prepared(), style)?,
+            view,
             drawing,
             clock: TimestampQuery::new(&gpu.device)?,
             device_counts,
@@ -181,7 +201,7 @@ impl<'a> Subject<'a> {
         }
         let shot = Shot {
             pipelines: &self.pipelines,
-            view: drawing::nowhere(),
+            view: self.view,
             instances: self.instances.a_draw,
             batches,
         };
@@ -216,11 +236,14 @@ impl<'a> Subject<'a> {
                 counters.overflows
             )));
         }
-        let predicted: u64 = drawn().map(|batch| u64::from(batch.vertices())).sum();
+        let decided = self.decided(list)?;
+        let predicted = decided.vertices;
         let evaluations = match counted.filter(|_| self.device_counts) {
             Some([_, evaluations, _]) => evaluations,
             None => {
-                self.drawing.surface().arrival(drawn())?.check()?;
+                if self.drawing.surface().options().count_vertices {
+                    self.drawing.surface().arrival(drawn())?.check()?;
+                }
                 predicted
             }
         };
@@ -229,24 +252,32 @@ impl<'a> Subject<'a> {
             let what = format!("{missing} of {predicted} vertices of a frame");
             return Err(Error::Lost { what });
         }
-        let prepared = self.drawing.prepared();
-        let products = |batch: hullform::gpu::Batch<'_>| -> u64 {
-            let pass = &prepared.passes[batch.pass()];
-            let patches = batch.patches().map(|patch| patch as usize);
-            patches.map(|patch| list.cut().products(pass, patch)).sum()
-        };
         Ok(Work {
-            patches: drawn().map(|batch| batch.patches().len() as u64).sum(),
             evaluations,
             points: u64::from(counters.points) + u64::from(cached),
             products: match self.residence {
-                Residence::Ring => batches().map(products).sum(),
+                Residence::Ring => decided.products,
                 Residence::Cache if cached > 0 => self.cached_products(list),
                 Residence::Cache => 0,
             },
             draws: batches().map(|batch| batch.draws().len() as u64).sum(),
             barriers: batches().filter(|batch| batch.waits()).count() as u64,
+            decided,
         })
+    }
+
+    /// What was decided about all patches, by the host or the device, each time that they were drawn.
+    fn decided(&self, list: &DrawList) -> Result<Outcome> {
+        let (surface, views) = (self.drawing.surface(), self.instances.a_draw);
+        if surface.options().decides == Decides::Device {
+            return Ok(surface
+                .outcome(list, 0..views)?
+                .times(u64::from(self.rounds())));
+        }
+        let prepared = self.drawing.prepared();
+        Ok(list
+            .outcome(prepared)
+            .times(u64::from(views * self.rounds())))
     }
 
     /// The products of all that a list needs in a cache.
@@ -265,6 +296,10 @@ impl<'a> Subject<'a> {
             backend: self.backend.name(),
             residence: self.residence.name(),
             is_static: self.is_static,
+            decides: match self.drawing.surface().options().decides {
+                Decides::Host => "host",
+                Decides::Device => "device",
+            },
             passes: self.passes,
             instances: self.instances.a_draw * self.instances.draws,
             cpu: level.cpu.clone(),
@@ -276,6 +311,22 @@ impl<'a> Subject<'a> {
             device_bytes: self.device_bytes,
             storage_buffers: hullform::gpu::Layout::STORAGE_BUFFERS,
         })
+    }
+}
+
+/// From where decisions see a model: all of it.
+fn seen(model: &Model, arguments: &Arguments) -> Seen {
+    let Size { width, height } = arguments.size;
+    let size = [width, height].map(|side| side as f32);
+    let view = arguments
+        .sight
+        .camera
+        .frame(&model.positions(), size[0] / size[1]);
+    Seen {
+        clip_from_model: view.clip_from_model,
+        eye: view.eye,
+        scale: model.placement().scale,
+        size,
     }
 }
 

@@ -18,7 +18,7 @@ use super::program::{Changes, Program, Setting};
 use super::settings::Settings;
 use super::surroundings::{Losses, Surroundings, instance, no_display};
 use super::viewer::{Intent, Viewer};
-use super::workers::Wake;
+use super::workers::{Wake, stand_back_in_parallel};
 use crate::options::Global;
 use crate::window::Arguments;
 
@@ -35,6 +35,7 @@ pub struct Woken;
 
 /// Opens the window and stays until it is closed.
 pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
+    stand_back_in_parallel();
     let events = EventLoop::<Woken>::with_user_event().build();
     let events = events.map_err(|error| no_display(&error.to_string()))?;
     let mut app = App {
@@ -336,13 +337,13 @@ impl Open {
         let program = &self.program;
         self.log.add(|| program.state());
         self.wanted |= matches!(outcome.shown, Shown::NotYet | Shown::WindowChanged);
-        if outcome.scene {
-            // What the scene cost is told by the next frame.
-            self.program.egui.request_repaint_after(SETTLED);
-        }
         let moving = self.program.viewer.is_moving() && outcome.shown != Shown::Hidden;
         self.wanted |= moving || self.program.canvas.is_shooting();
         let mut soon = delay.filter(|delay| *delay < Duration::from_secs(60));
+        if outcome.scene {
+            // What the scene cost is told by the next frame, and what waits until it is there begins.
+            soon = Some(soon.map_or(SETTLED, |delay| delay.min(SETTLED)));
+        }
         if !self.program.busy().is_empty() {
             soon = Some(soon.map_or(PROGRESS, |delay| delay.min(PROGRESS)));
         }
@@ -373,6 +374,8 @@ impl Open {
     }
 
     fn close(self) -> Result<()> {
+        // What is still drawn or written may take a moment, of which nobody needs to see anything.
+        self.surroundings.window.set_visible(false);
         let scale = self.surroundings.window.scale_factor();
         let size: LogicalSize<u32> = self.surroundings.window.inner_size().to_logical(scale);
         let size = Some([size.width, size.height]).filter(|size| !size.contains(&0));

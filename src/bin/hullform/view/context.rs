@@ -4,17 +4,19 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use hullform::ash::vk;
-use hullform::gpu::shaders::{Embedded, Modules};
+use hullform::gpu::shaders::Modules;
 use hullform::gpu::{
-    Backend, CachePipelines, DrawList, Fill, Layout, Pipelines, Residence, Slots, SurfaceOptions,
+    Backend, CachePipelines, DrawList, Layout, Pipelines, Residence, Slots, SurfaceOptions,
     TessellatedSurface,
 };
 use hullform::host::{Device, OffscreenTarget, Owned, Style};
 use hullform::mesh::{ControlMesh, Model};
 use hullform::method::{MethodOptions, Prepared, method, prepare_by_default_with};
+use hullform::plan::Database;
 use hullform::{Error, Result};
 
-use crate::db::database;
+use super::kept::{Kept, key};
+pub use super::kept::{Key, Made, Shaders};
 use crate::gpu::Gpu;
 use crate::options::Global;
 
@@ -29,27 +31,6 @@ pub struct Recipe {
     pub residence: Residence,
     /// Whether vertices with an odd number of bits are moved, so that cracks show.
     pub amplify: bool,
-}
-
-/// What pipelines are for: the shaders of the passes, and how they are drawn.
-pub type Key = (Vec<&'static str>, Style);
-
-/// Pipelines that have been made.
-pub type Made = Vec<(Key, Arc<Owned<Pipelines>>)>;
-
-/// Where shaders are from, and which of all that there have been they are.
-#[derive(Clone)]
-pub struct Shaders {
-    /// Grows with each change.
-    pub version: u64,
-    /// Their modules.
-    pub modules: Arc<dyn Modules + Send + Sync>,
-}
-
-/// Pipelines with the shaders that all of them are made of.
-struct Kept {
-    shaders: Shaders,
-    pipelines: Made,
 }
 
 /// What surfaces share. Fields are dropped in this order.
@@ -94,13 +75,7 @@ impl Context {
         // SAFETY: the device is live.
         let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
         Ok(Context {
-            kept: Mutex::new(Kept {
-                shaders: Shaders {
-                    version: 0,
-                    modules: Arc::new(Embedded),
-                },
-                pipelines: Vec::new(),
-            }),
+            kept: Mutex::new(Kept::new()),
             // SAFETY: the layout was just made by this device.
             layout: unsafe { Owned::new(device, layout) },
             mould: OffscreenTarget::with_format(device, 1, 1, samples, format)?,
@@ -124,18 +99,13 @@ impl Context {
         &self.mould
     }
 
-    /// Prepares a model and brings it to the device. Takes its time: for workers.
-    pub fn place(&self, model: &Model, recipe: Recipe) -> Result<Drawn> {
-        let started = Instant::now();
-        let span = tracing::debug_span!("prepare").entered();
-        let (prepared, refusals) = prepare(model, recipe.method)?;
-        drop(span);
-        let seconds = started.elapsed().as_secs_f64();
+    /// Brings a model to the device that was prepared. Takes its time: for workers.
+    pub fn place(&self, model: &Model, prepared: Readied, recipe: Recipe) -> Result<Drawn> {
         let started = Instant::now();
         let _span = tracing::debug_span!("upload").entered();
-        let mut drawn = self.upload(model, prepared, recipe)?;
-        drawn.seconds = [seconds, started.elapsed().as_secs_f64()];
-        drawn.refusals = refusals.iter().map(ToString::to_string).collect();
+        let mut drawn = self.upload(model, prepared.prepared, recipe)?;
+        drawn.seconds = [prepared.seconds, started.elapsed().as_secs_f64()];
+        drawn.refusals = prepared.refusals;
         Ok(drawn)
     }
 
@@ -155,17 +125,9 @@ impl Context {
         let workarounds = &self.gpu.workarounds;
         // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
         let surface = unsafe {
-            let allocator = &mut *device.allocator();
+            let memory = &mut device.memory();
             let raw = device.raw();
-            TessellatedSurface::new(
-                raw,
-                allocator,
-                layout,
-                model,
-                prepared,
-                workarounds,
-                options,
-            )
+            TessellatedSurface::new(raw, memory, layout, model, prepared, workarounds, options)
         }?;
         // SAFETY: it was just made by this device.
         let mut surface = unsafe { Owned::new(device, surface) };
@@ -184,7 +146,7 @@ impl Context {
             Ok(())
         })?;
         // SAFETY: the upload has been waited for.
-        unsafe { surface.finish_upload(device.raw(), &mut device.allocator()) };
+        unsafe { surface.finish_upload(device.raw(), &mut device.memory()) };
         Ok(Drawn {
             surface,
             cache,
@@ -202,26 +164,18 @@ impl Context {
 
     /// Pipelines that have been made.
     pub fn ready(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
-        find(&self.kept().pipelines, key)
+        self.kept().find(key)
     }
 
     /// The same, or others that draw the same patches in another look until these are there.
     pub fn ready_or_like(&self, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
         let kept = self.kept();
-        let lines = |fill| fill == Fill::Lines;
-        let like = |(shaders, style): &Key| {
-            let of = |style: &Style| {
-                (
-                    style.backend,
-                    style.residence,
-                    style.spacing,
-                    lines(style.fill),
-                )
-            };
-            *shaders == key.0 && of(style) == of(&key.1)
-        };
-        let found = kept.pipelines.iter().rev().find(|(other, _)| like(other));
-        find(&kept.pipelines, key).or_else(|| found.map(|(_, pipelines)| pipelines.clone()))
+        kept.find(key).or_else(|| kept.find_like(key))
+    }
+
+    /// Gives up pipelines that have not been drawn with for a while. Not while a frame is drawn.
+    pub fn give_up_but(&self, wanted: &[Key]) -> Made {
+        self.kept().give_up_but(wanted)
     }
 
     /// Makes pipelines, unless they are there. Takes its time: for workers.
@@ -235,7 +189,7 @@ impl Context {
         let mut kept = self.kept();
         // Others may have come meanwhile: then it will be made of those.
         if kept.shaders.version == shaders.version {
-            kept.pipelines.push((key, made.clone()));
+            kept.add(key, made.clone());
         }
         Ok(made)
     }
@@ -258,15 +212,10 @@ impl Context {
         Ok(made)
     }
 
-    /// Goes over to other shaders, with the pipelines that have been made of them. Not while a frame is drawn.
+    /// Goes over to other shaders, with the pipelines that have been made of them; the old ones come back. Not while a frame is drawn.
     #[cfg(feature = "shaderc")]
-    pub fn exchange(&self, modules: Arc<dyn Modules + Send + Sync>, pipelines: Made) {
-        let mut kept = self.kept();
-        let version = kept.shaders.version + 1;
-        *kept = Kept {
-            shaders: Shaders { version, modules },
-            pipelines,
-        };
+    pub fn exchange(&self, modules: Arc<dyn Modules + Send + Sync>, pipelines: Made) -> Made {
+        self.kept().exchange(modules, pipelines)
     }
 
     fn make_of(
@@ -285,12 +234,19 @@ impl Context {
         Ok(Arc::new(unsafe { Owned::new(device, made?) }))
     }
 
-    /// Writes what pipelines were made of, for the next start.
-    pub fn save_cache(&self) {
+    /// Writes what pipelines were made of, for the next start: how many there had been. Takes its time: for workers.
+    pub fn save_cache(&self) -> u64 {
+        let made = self.made();
         // A device that cannot tell has other troubles, of which others tell.
         if let Err(error) = self.gpu.keep_pipelines() {
             tracing::info!("{error}");
         }
+        made
+    }
+
+    /// How many pipelines were made so far.
+    pub fn made(&self) -> u64 {
+        self.kept().made()
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {
@@ -298,27 +254,43 @@ impl Context {
     }
 }
 
-/// Prepares a model by a method, or by the one that draws its limit or comes near, with the plans of this run's database; and why those before that one
-/// refused.
-pub fn prepare(model: &Model, by: Option<&'static str>) -> Result<(Prepared, Vec<Error>)> {
-    let options = MethodOptions::default();
-    match by {
-        Some(name) => {
-            let prepared = method(name)?.prepare_with(model, options, database()?)?;
-            Ok((prepared, Vec::new()))
-        }
-        None => prepare_by_default_with(model, options, database()?),
+/// What a method made of a model, with what it took.
+pub struct Readied {
+    prepared: Prepared,
+    /// Seconds.
+    seconds: f64,
+    /// Why methods that come before the one that did it refused.
+    refusals: Vec<String>,
+}
+
+impl Readied {
+    /// Prepares a model. Takes its time, and needs no device: for workers.
+    pub fn new(model: &Model, by: Option<&'static str>, database: &Database) -> Result<Readied> {
+        let started = Instant::now();
+        let _span = tracing::debug_span!("prepare").entered();
+        let (prepared, refusals) = prepare(model, by, database)?;
+        Ok(Readied {
+            prepared,
+            seconds: started.elapsed().as_secs_f64(),
+            refusals: refusals.iter().map(ToString::to_string).collect(),
+        })
     }
 }
 
-fn key(prepared: &Prepared, style: Style) -> Key {
-    let shaders = prepared.passes.iter().map(|pass| pass.shader);
-    (shaders.collect(), style)
-}
-
-fn find(all: &Made, key: &Key) -> Option<Arc<Owned<Pipelines>>> {
-    let found = all.iter().find(|(other, _)| other == key);
-    found.map(|(_, pipelines)| pipelines.clone())
+/// Prepares a model by a method, or by the one that draws its limit or comes near, with the plans of a database; and why those before that one refused.
+pub fn prepare(
+    model: &Model,
+    by: Option<&'static str>,
+    database: &Database,
+) -> Result<(Prepared, Vec<Error>)> {
+    let options = MethodOptions::default();
+    match by {
+        Some(name) => {
+            let prepared = method(name)?.prepare_with(model, options, database)?;
+            Ok((prepared, Vec::new()))
+        }
+        None => prepare_by_default_with(model, options, database),
+    }
 }
 
 /// The greatest level that a back-end draws.

@@ -10,6 +10,9 @@ use hullform::mesh::{
     BoundaryInterpolation, ControlMesh, CreaseMethod, Scheme, TriangleSubdivision,
 };
 
+/// How many single things all steps that can be taken back have changed, at most: some 60 bytes each.
+const GREATEST_PAST: usize = 1 << 20;
+
 /// An edge by its vertices, the smaller number first.
 pub type EdgeKey = [u32; 2];
 
@@ -214,6 +217,16 @@ impl Change {
         }
     }
 
+    /// How many things it changes.
+    fn size(&self) -> usize {
+        match self {
+            Change::Creases(all) => all.len(),
+            Change::Corners(all) => all.len(),
+            Change::Holes(all) => all.len(),
+            Change::Positions(all) => all.len(),
+        }
+    }
+
     /// Whether nothing but places differ: plans do not depend on these.
     fn is_of_positions(&self) -> bool {
         matches!(self, Change::Positions(_))
@@ -298,14 +311,34 @@ impl History {
                 .is_some_and(|last| last.absorb(&change));
         if !absorbed {
             self.done.push(change);
+            self.forget(GREATEST_PAST);
         } else if self.saved == Some(self.done.len()) {
             self.saved = None;
         }
     }
 
+    /// Forgets the first steps where all together have changed more than so many things; the last one stays.
+    fn forget(&mut self, greatest: usize) {
+        let mut rest = greatest;
+        let late = self.done.iter().rev().take_while(|change| {
+            let fits = change.size() <= rest;
+            rest -= change.size().min(rest);
+            fits
+        });
+        let early = self.done.len().saturating_sub(late.count().max(1));
+        self.done.drain(..early);
+        // What is in a file may lie before all that can be taken back.
+        self.saved = self.saved.and_then(|steps| steps.checked_sub(early));
+    }
+
     /// What is dragged is let go.
     pub fn drop_it(&mut self) {
         self.dragging = false;
+    }
+
+    /// Whether something is being dragged.
+    pub fn is_dragging(&self) -> bool {
+        self.dragging
     }
 
     /// Takes the last step back, if there is one.
@@ -413,6 +446,34 @@ mod tests {
         change(&mut history, 7.0);
         history.was_saved(before);
         assert!(history.is_changed(), "more was done while it was written");
+    }
+
+    #[test]
+    fn the_past_is_bounded_and_what_is_in_a_file_may_lie_before_it() {
+        let mut history = history();
+        let step = |history: &mut History, vertices: std::ops::Range<u32>| {
+            let was = history.draft().positions.clone();
+            let moved = vertices.map(|v| (v, [was[v as usize], DVec3::ONE]));
+            history.change(Change::Positions(moved.collect()), false);
+        };
+        (0..4).for_each(|_| step(&mut history, 0..10));
+        history.was_saved(history.revision());
+        history.forget(25);
+        assert_eq!((history.steps(), history.is_changed()), ([2, 0], false));
+        step(&mut history, 0..1);
+        history.forget(5);
+        assert_eq!((history.steps(), history.is_changed()), ([1, 0], true));
+        assert!(history.undo());
+        assert!(!history.is_changed(), "that is how it was saved");
+        step(&mut history, 0..10);
+        step(&mut history, 0..10);
+        history.forget(3);
+        assert_eq!(history.steps(), [1, 0], "the last step stays");
+        history.undo();
+        assert!(
+            history.is_changed(),
+            "the way to what was saved is forgotten"
+        );
     }
 
     #[test]

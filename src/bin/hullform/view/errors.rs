@@ -14,11 +14,13 @@ use super::context::{Context, Recipe, prepare, under_scheme};
 use super::draft::Draft;
 use super::probe::Boxes;
 use super::viewer::ErrorKind;
+use super::workers::Entrance;
 use crate::camera::View;
 use crate::capture;
 use crate::compare::errors::{Errors, Known, Reference, Summary};
 use crate::compare::picture::coloured;
 use crate::compare::scale::Scale;
+use crate::db::database;
 use crate::drawing;
 use crate::options::{Cutting, Triangulate};
 use crate::output::Surface;
@@ -64,7 +66,7 @@ pub struct Measured {
 
 /// Captures a surface. Takes its time: for workers.
 pub fn measure(
-    context: &Context,
+    entrance: &Entrance<Context>,
     draft: &Draft,
     triangulate: Triangulate,
     subject: Subject,
@@ -72,7 +74,8 @@ pub fn measure(
     let mesh = draft.mesh()?;
     let scheme = subject.scheme.unwrap_or(mesh.options().scheme);
     let model = Model::new(under_scheme(mesh, scheme, triangulate)?);
-    let (prepared, _) = prepare(&model, subject.recipe.method)?;
+    let (prepared, _) = prepare(&model, subject.recipe.method, database()?)?;
+    let context = entrance.enter()?;
     let bench = drawing::blind(&context.gpu)?;
     // SAFETY: the modules are ours, or what somebody makes of them to look at.
     let bench = unsafe { bench.with_modules(context.shaders().modules) };

@@ -11,6 +11,7 @@ mod errors;
 mod folder;
 mod glsl;
 mod haste;
+mod kept;
 mod log;
 mod notices;
 mod orbit;

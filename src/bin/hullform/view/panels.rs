@@ -16,6 +16,9 @@ use super::viewer::Viewer;
 /// How wide panels are, in points.
 const WIDTH: f32 = 268.0;
 
+/// The least that panels leave of a window's width for the scene, in points.
+const NARROWEST: f32 = 200.0;
+
 /// What panels tell of the program around the viewer.
 pub struct Status<'a> {
     /// Measurements.
@@ -71,11 +74,14 @@ pub fn show(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
             viewer.obey(command);
         }
     }
-    if viewer.panels {
+    let [left, right] = sides(ctx.content_rect().width());
+    if viewer.panels && left {
         side(ctx, "looks", true, |ui| {
             looks::show(ui, viewer);
             edits::show(ui, viewer);
         });
+    }
+    if viewer.panels && right {
         side(ctx, "readings", false, |ui| {
             readings::show(ui, viewer, status);
         });
@@ -86,6 +92,11 @@ pub fn show(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
         sheet::show(ctx, viewer);
     }
     unsaved::show(ctx, viewer);
+}
+
+/// Which panels fit beside a scene, in so many points: in narrow windows first the readings go, then the rest.
+fn sides(width: f32) -> [bool; 2] {
+    [1.0, 2.0].map(|panels| width >= panels * WIDTH + NARROWEST)
 }
 
 fn side(ctx: &Context, name: &'static str, left: bool, contents: impl FnOnce(&mut Ui)) {
@@ -157,7 +168,11 @@ fn choice<T: PartialEq + Clone>(
 
 /// What there is to be told, in the lower left corner of the scene.
 fn notices(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
-    let left = if viewer.panels { WIDTH + 16.0 } else { 16.0 };
+    let [beside, _] = sides(ctx.content_rect().width());
+    let left = match viewer.panels && beside {
+        true => WIDTH + 16.0,
+        false => 16.0,
+    };
     let offset = egui::vec2(left, -14.0);
     let parts = viewer.parts.iter();
     let errors = parts.filter_map(|part| part.error.clone());

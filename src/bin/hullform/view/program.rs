@@ -2,8 +2,10 @@
 
 mod cursor;
 mod drawing;
+mod input;
 mod saves;
 mod shaders;
+mod showing;
 mod start;
 mod state;
 mod takes;
@@ -15,17 +17,16 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use hullform::Result;
-use hullform::gpu::Cut;
 use hullform::host::{Shown, WindowSurface};
 use hullform::mesh::{ControlMesh, Model};
+use hullform::plan::Database;
 
-use super::canvas::{Canvas, Panels};
+use super::canvas::Canvas;
 use super::clipboard::Clipboard;
-use super::command::of_event;
 use super::context::{Context, Drawn, Key};
 use super::errors::{Measured, Subject};
 use super::haste::Haste;
-use super::panels::{self, Status};
+use super::panels;
 use super::part::Wanted;
 use super::probe::Found;
 use super::readings::Readings;
@@ -35,8 +36,8 @@ use super::watch::Watch;
 use super::workers::{Wake, Workers};
 use crate::options::Shape;
 
-/// How long what is still worked on is waited for in the end.
-const PATIENCE: Duration = Duration::from_secs(3);
+/// How long what uses the device, or is being written, is waited for in the end.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What workers bring.
 pub enum Done {
@@ -50,6 +51,8 @@ pub enum Done {
     Measured(Box<Subject>, Result<Arc<Measured>>),
     /// Its errors are known.
     Compared(Result<()>),
+    /// What pipelines are made of was written.
+    Kept,
     /// Shaders were compiled.
     Compiled(Result<shaders::Compiled>),
     /// Something was saved, in words.
@@ -88,7 +91,7 @@ pub struct Program {
     pub(super) stage: Stage,
     pub(super) canvas: Canvas,
     pub(super) context: Arc<Context>,
-    pub(super) workers: Workers<Done>,
+    pub(super) workers: Workers<Context, Done>,
     pub(super) shape: Shape,
     watch: Watch,
     running: Running,
@@ -102,13 +105,29 @@ pub struct Program {
     live: shaders::Live,
     began: Instant,
     haste: Haste,
+    /// Seconds for which the window waited until it could hand over the last scene.
+    handed_over: f64,
     /// Whether the scene has changed and is not drawn yet.
     undrawn: bool,
+    /// Whether a measurement that is asked for waits until nobody is at work.
+    unmeasured: bool,
     /// Whether there is no picture of the scene yet.
     anew: bool,
     /// What the scene's picture shows.
     drawn: Option<drawing::Drawing>,
     fresh: bool,
+    /// Plans of what is dragged.
+    sketch: Option<Arc<Database>>,
+    /// When what pipelines are made of was written last, and how many there had been.
+    saved: Option<Instant>,
+    saved_pipelines: u64,
+}
+
+impl Running {
+    /// Whether nothing is prepared, and no pipeline made.
+    fn is_idle(&self) -> bool {
+        self.read.is_empty() && self.built.is_empty() && self.piped.is_empty()
+    }
 }
 
 /// What a program is to know besides.
@@ -146,9 +165,11 @@ impl Program {
         if let Some(folder) = &glsl {
             watch.look_into(folder);
         }
+        let context = Arc::new(context);
         Ok(Program {
             stage: Stage::new(&context)?,
-            context: Arc::new(context),
+            workers: Workers::new(context.clone(), wake),
+            context,
             readings: Readings::default(),
             running: Running::default(),
             failed: Failed::default(),
@@ -159,9 +180,14 @@ impl Program {
             found: None,
             drawn: None,
             fresh: true,
+            sketch: None,
+            saved: None,
+            saved_pipelines: 0,
             began: Instant::now(),
             haste: Haste::default(),
+            handed_over: 0.0,
             undrawn: false,
+            unmeasured: false,
             anew: true,
             live: shaders::Live {
                 due: glsl.is_some(),
@@ -173,14 +199,7 @@ impl Program {
             canvas,
             shape,
             watch,
-            workers: Workers::new(wake),
         })
-    }
-
-    /// How long until another picture may be due, where there is one that is coarser or of earlier edits.
-    pub fn until_full(&self) -> Option<Duration> {
-        let both = [self.haste.left(), self.haste.breather()];
-        both.into_iter().flatten().min()
     }
 
     /// What is being worked on, in words.
@@ -214,148 +233,14 @@ impl Program {
     /// Whether all is there that is wanted.
     pub fn is_settled(&self) -> bool {
         let running = &self.running;
-        running.read.is_empty()
-            && running.built.is_empty()
-            && running.piped.is_empty()
+        running.is_idle()
             && running.compared.is_none()
             && running.measured.is_none()
             && running.saved == 0
-            && self.haste.left().is_none()
-            && !self.undrawn
+            && !self.unmeasured
+            && self.is_whole()
             && !self.live.running
             && (!self.live.due || self.stage.parts.is_empty())
-    }
-
-    /// Runs the panels on what came in. What a button of the mouse does stands between what came before it and what after: else a drag that begins
-    /// and ends within one slow frame would be none.
-    pub fn panels(&mut self, mut input: egui::RawInput) -> egui::FullOutput {
-        let _span = tracing::debug_span!("panels").entered();
-        self.take_tabs(&mut input.events);
-        let runs = runs(std::mem::take(&mut input.events));
-        let mut output = egui::FullOutput::default();
-        for events in runs {
-            let one = egui::RawInput {
-                events,
-                ..input.take()
-            };
-            output.append(self.panels_once(one));
-        }
-        output
-    }
-
-    /// Takes Tab for our own where nothing is written: egui would give the keys to one of its widgets, and all others would be dead.
-    fn take_tabs(&mut self, events: &mut Vec<egui::Event>) {
-        if self.egui.wants_keyboard_input() || self.viewer.intent.is_some() {
-            return;
-        }
-        let is_tab = |event: &egui::Event| {
-            matches!(
-                event,
-                egui::Event::Key {
-                    key: egui::Key::Tab,
-                    ..
-                }
-            )
-        };
-        let tabs: Vec<egui::Event> = events.extract_if(.., |event| is_tab(event)).collect();
-        for command in tabs.iter().filter_map(of_event) {
-            self.viewer.obey(command);
-        }
-    }
-
-    fn panels_once(&mut self, input: egui::RawInput) -> egui::FullOutput {
-        self.look_under_cursor();
-        let legend = self.legend();
-        let egui = self.egui.clone();
-        let busy = self.busy();
-        let (viewer, found) = (&mut self.viewer, self.found.as_ref());
-        let (readings, shaders) = (&self.readings, self.live.error.as_deref());
-        egui.run(input, |ctx| {
-            let status = Status {
-                readings,
-                busy: busy.clone(),
-                probe: found,
-                shaders,
-                scale: legend.clone(),
-            };
-            panels::show(ctx, viewer, &status);
-        })
-    }
-
-    /// Shows a frame, with the scene drawn anew if it has changed. Only when the canvas is not busy.
-    pub fn show(&mut self, panels: &Panels) -> Result<Outcome> {
-        let started = Instant::now();
-        if let Some(seconds) = self.stage.device_seconds() {
-            self.readings.device.add(seconds);
-            self.haste.took(seconds);
-        }
-        // Events tell sizes that the window's images may not have yet.
-        self.viewer.area = self.viewer.area.within(self.canvas.size());
-        let drawing = self.drawing();
-        let area = self.viewer.area;
-        // A picture that is saved is the full one.
-        let shooting = self.canvas.is_shooting();
-        let left = self.haste.left();
-        let rested = left.is_some_and(|left| left.is_zero() || shooting);
-        let moved = self.fresh || self.drawn.as_ref() != Some(&drawing);
-        let changed = moved || rested;
-        let running = |key: &Key| self.running.piped.contains(key);
-        // The last picture stays meanwhile, if it still is one of this window.
-        let waits = !self.anew && self.stage.waits(&self.viewer, &self.context, running);
-        // Of edits the panels tell at once.
-        let last = self.drawn.as_ref().filter(|_| !self.fresh);
-        let held = last.is_some_and(|last| drawing.is_edit_of(last))
-            && self.haste.breather().is_some()
-            && !shooting;
-        let mut scene = changed && !area.is_empty() && !waits && !held;
-        let full = self.viewer.cutting.cut();
-        let cut = match moved && !self.anew && !shooting {
-            true => Cut {
-                level: self.haste.level(full.level),
-                ..full
-            },
-            false => full,
-        };
-        if scene {
-            let overlay = self.overlay(f64::from(panels.scale), drawing.legend());
-            let stage = &mut self.stage;
-            if let Err(error) = stage.decide(&self.viewer, cut, &overlay, &self.context) {
-                self.fails(error)?;
-                scene = false;
-            }
-        }
-        self.canvas.confine(area);
-        let (stage, viewer, context) = (&mut self.stage, &self.viewer, &self.context);
-        let mut cost = None;
-        let mut record = |cmd, target: &_| {
-            cost = Some(stage.record(cmd, target, viewer, context)?);
-            Ok(())
-        };
-        let shown = match scene {
-            true => self.canvas.show(panels, area, Some(&mut record)),
-            false => self.canvas.show(panels, area, None),
-        }?;
-        if shown == Shown::Yes {
-            self.readings.frames[0] += 1;
-            self.readings.host.add(started.elapsed().as_secs_f64());
-            if let Some(cost) = cost {
-                self.readings.frames[1] += 1;
-                self.haste.drawn(cut.level < full.level);
-                self.readings.cost = cost;
-            }
-        }
-        self.undrawn = held || waits || scene && !matches!(shown, Shown::Yes | Shown::Hidden);
-        if held {
-            // It is drawn after a moment.
-        } else if waits {
-            // It is drawn when they are there.
-            self.drawn = None;
-        } else if shown == Shown::Yes || shown == Shown::Hidden || !scene {
-            self.drawn = Some(drawing);
-            self.fresh &= !scene && changed;
-            self.anew &= !scene;
-        }
-        Ok(Outcome { shown, scene })
     }
 
     /// Goes along with a window of this size.
@@ -425,20 +310,4 @@ impl Program {
         }
         Ok(false)
     }
-}
-
-/// Events in their order, those of the mouse's buttons by themselves; one run at least.
-fn runs(events: Vec<egui::Event>) -> Vec<Vec<egui::Event>> {
-    let mut runs = vec![Vec::new()];
-    for event in events {
-        let alone = matches!(event, egui::Event::PointerButton { .. });
-        let last_alone = runs.last().is_some_and(|run: &Vec<egui::Event>| {
-            matches!(run.last(), Some(egui::Event::PointerButton { .. }))
-        });
-        if (alone || last_alone) && runs.last().is_some_and(|run| !run.is_empty()) {
-            runs.push(Vec::new());
-        }
-        runs.last_mut().expect("there is one").push(event);
-    }
-    runs
 }

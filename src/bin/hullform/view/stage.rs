@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{Cut, DrawList, Fill, Pipelines, Residence, View, ring};
+use hullform::gpu::{Cut, DrawList, Fill, Pipelines, Residence, SurfaceOptions, View, ring};
 use hullform::host::{
     ColouredTriangles, ColouredVertex, OffscreenTarget, Owned, Style, TimestampQuery,
 };
@@ -93,6 +93,11 @@ impl Staged {
             decided: None,
         }
     }
+
+    /// The vertices that a side is drawn with.
+    pub fn vertices(&self, side: usize) -> u64 {
+        self.sides.get(side).map_or(0, |drawn| drawn.vertices)
+    }
 }
 
 impl Stage {
@@ -144,6 +149,31 @@ impl Stage {
         let mut fills = vec![Fill::Solid(viewer.look.shading.into())];
         fills.extend(viewer.look.wireframe.then_some(Fill::Lines));
         fills
+    }
+
+    /// Takes a part in; what there was of it comes back.
+    pub fn put(&mut self, staged: Staged) -> Vec<Staged> {
+        let same = |other: &mut Staged| other.number == staged.number;
+        let old = self.parts.extract_if(.., same).collect();
+        self.parts.push(staged);
+        self.parts.sort_by_key(|staged| staged.number);
+        old
+    }
+
+    /// Keeps these parts alone; the others come back.
+    pub fn keep(&mut self, numbers: &[u64]) -> Vec<Staged> {
+        let gone = |staged: &mut Staged| !numbers.contains(&staged.number);
+        self.parts.extract_if(.., gone).collect()
+    }
+
+    /// What pipelines must be for to draw everything.
+    pub fn keys(&self, viewer: &Viewer) -> Vec<Key> {
+        let drawn = self.parts.iter().flat_map(|part| &part.sides);
+        let keys = drawn.flat_map(|drawn| {
+            let fills = Stage::fills(viewer).into_iter();
+            fills.map(|fill| drawn.key(style(drawn, viewer, fill)))
+        });
+        keys.collect()
     }
 
     /// Pipelines that are needed and not there, each with a part and a side that they are for.
@@ -258,9 +288,15 @@ impl Stage {
 
 /// How surfaces are drawn.
 pub fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
+    style_of(drawn.surface.options(), viewer, fill)
+}
+
+/// The same of surfaces that are not there yet. Wires are as thin as in `render`'s pictures.
+pub fn style_of(options: SurfaceOptions, viewer: &Viewer, fill: Fill) -> Style {
     Style {
         cull: viewer.cutting.cull.mode(),
-        ..Style::new(drawn.surface.options(), viewer.cutting.spacing, fill)
+        line_width: viewer.scale / render::SUPERSAMPLING as f32,
+        ..Style::new(options, viewer.cutting.spacing, fill)
     }
 }
 
@@ -342,9 +378,9 @@ impl Staged {
         let device = context.device();
         for drawn in &mut self.sides {
             let list = drawn.surface.draw_list(cut, tags.as_ref())?;
-            let allocator = &mut *device.allocator();
-            // SAFETY: nothing is drawn at this time; device and allocator made the surface.
-            unsafe { drawn.surface.write_draws(device.raw(), allocator, &list) }?;
+            let memory = &mut device.memory();
+            // SAFETY: nothing is drawn at this time; device and memory made the surface.
+            unsafe { drawn.surface.write_draws(device.raw(), memory, &list) }?;
             drawn.vertices = vertices(drawn.surface.prepared(), &list);
             drawn.list = Some(list);
         }

@@ -137,6 +137,8 @@ pub struct Viewer {
     pub pacing: Pacing,
     /// The scene's area in the window.
     pub area: Area,
+    /// Pixels of a point.
+    pub scale: f32,
     /// Where things are in the window, by name, in points: for who drives it by script.
     pub places: BTreeMap<&'static str, egui::Rect>,
     /// What is wanted of the program.
@@ -220,6 +222,7 @@ impl Default for Viewer {
             panels: true,
             pacing: Pacing::Display,
             area: Area::default(),
+            scale: 1.0,
             places: BTreeMap::new(),
             wishes: Vec::new(),
             intent: None,

@@ -23,6 +23,7 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
         viewer.places.insert("scene", rect);
         let size = ctx.input(|input| input.viewport_rect().size() * input.pixels_per_point);
         let size = [size.x.round() as u32, size.y.round() as u32];
+        viewer.scale = ctx.pixels_per_point();
         viewer.area = Area::of(rect, ctx.pixels_per_point(), size);
         let response = ui.interact(rect, ui.id().with("scene"), Sense::click_and_drag());
         let on_line = line(ui, viewer, rect);

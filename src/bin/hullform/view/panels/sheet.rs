@@ -1,6 +1,6 @@
 //! The keys, all on one sheet.
 
-use egui::{Color32, Context, RichText};
+use egui::{Color32, Context, RichText, Ui};
 
 use super::super::command::{KEYS, key_words};
 use super::super::viewer::Viewer;
@@ -15,6 +15,10 @@ pub const MOUSE: [(&str, &str); 6] = [
     ("Ctrl+drag", "move what is picked"),
 ];
 
+/// The width of a column, in points, and what of a window surrounds a sheet.
+const COLUMN: f32 = 330.0;
+const AROUND: egui::Vec2 = egui::vec2(48.0, 96.0);
+
 pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
     let mut open = true;
     let window = egui::Window::new("keys and mouse")
@@ -22,32 +26,38 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
         .collapsible(false)
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
+    let room = (ctx.content_rect().size() - AROUND).max(egui::vec2(120.0, 60.0));
     window.show(ctx, |ui| {
-        let mouse = MOUSE.iter().map(|&(how, what)| (how.to_string(), what));
-        let keys = KEYS
-            .iter()
-            .map(|binding| (key_words(binding), binding.words));
-        let all: Vec<_> = mouse.chain(keys).collect();
-        let rows = all.len().div_ceil(3);
-        ui.horizontal_top(|ui| {
-            for (number, column) in all.chunks(rows).enumerate() {
-                let grid = egui::Grid::new(("keys", number)).spacing([14.0, 3.0]);
-                grid.show(ui, |ui| {
-                    for (key, words) in column {
-                        ui.label(
-                            RichText::new(key)
-                                .monospace()
-                                .color(Color32::from_rgb(230, 160, 110)),
-                        );
-                        ui.label(*words);
-                        ui.end_row();
-                    }
-                });
-                ui.add_space(12.0);
-            }
-        });
+        let area = egui::ScrollArea::both()
+            .max_width(room.x)
+            .max_height(room.y);
+        area.show(ui, |ui| columns(ui, (room.x / COLUMN) as usize));
     });
     viewer.sheet = open;
+}
+
+/// All keys in as many columns as there is room for, three at most.
+fn columns(ui: &mut Ui, fit: usize) {
+    let mouse = MOUSE.iter().map(|&(how, what)| (how.to_string(), what));
+    let keys = KEYS
+        .iter()
+        .map(|binding| (key_words(binding), binding.words));
+    let all: Vec<_> = mouse.chain(keys).collect();
+    let rows = all.len().div_ceil(fit.clamp(1, 3));
+    ui.horizontal_top(|ui| {
+        for (number, column) in all.chunks(rows).enumerate() {
+            let grid = egui::Grid::new(("keys", number)).spacing([14.0, 3.0]);
+            grid.show(ui, |ui| {
+                for (key, words) in column {
+                    let key = RichText::new(key).monospace();
+                    ui.label(key.color(Color32::from_rgb(230, 160, 110)));
+                    ui.label(*words);
+                    ui.end_row();
+                }
+            });
+            ui.add_space(12.0);
+        }
+    });
 }
 
 #[cfg(test)]

@@ -28,7 +28,10 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
             for (words, choice, place) in all {
                 let enabled = !viewer.saving || choice == Choice::Back;
                 let button = ui.add_enabled(enabled, egui::Button::new(words));
-                viewer.places.insert(place, button.rect);
+                // While egui finds out its size it is not where it will be.
+                if !ui.is_sizing_pass() {
+                    viewer.places.insert(place, button.rect);
+                }
                 if button.clicked() {
                     chosen = Some(choice);
                 }

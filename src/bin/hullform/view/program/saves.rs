@@ -6,10 +6,12 @@ use hullform::Result;
 use hullform::mesh::Scheme;
 
 use super::{Done, Program};
+use crate::view::context::Context;
 use crate::view::draft::Draft;
 use crate::view::part::Part;
 use crate::view::picture;
 use crate::view::viewer::Viewer;
+use crate::view::workers::Entrance;
 
 impl Program {
     /// Saves the picture of the window that was taken, when its frame is done.
@@ -19,7 +21,11 @@ impl Program {
         };
         self.running.saved += 1;
         let file = picture::free_name("hullform", "png");
-        let work = move || picture::save(&file, size, &pixels);
+        let work = move |entrance: &Entrance<Context>| {
+            // What is written is waited for.
+            entrance.enter()?;
+            picture::save(&file, size, &pixels)
+        };
         self.workers.start("save", work, Done::Saved)
     }
 
@@ -37,8 +43,11 @@ impl Program {
             return Ok(());
         };
         self.running.saved += 1;
-        let (context, how) = (self.context.clone(), self.shape.triangulate);
-        let work = move || picture::render(&context, &draft, how, scheme, &words, &file);
+        let how = self.shape.triangulate;
+        let work = move |entrance: &Entrance<Context>| {
+            let context = entrance.enter()?;
+            picture::render(&context, &draft, how, scheme, &words, &file)
+        };
         self.workers.start("render", work, Done::Saved)
     }
 
@@ -81,7 +90,10 @@ impl Program {
             .iter()
             .map(|copy| (copy.number, copy.revision))
             .collect();
-        let work = move || all.iter().map(Copy::write).collect::<Result<Vec<String>>>();
+        let work = move |entrance: &Entrance<Context>| {
+            entrance.enter()?;
+            all.iter().map(Copy::write).collect::<Result<Vec<String>>>()
+        };
         let told = move |result: Result<Vec<String>>| {
             Done::Written(told, result.map(|words| words.join("\n")))
         };

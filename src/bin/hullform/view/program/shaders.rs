@@ -38,7 +38,9 @@ impl Program {
     /// Compiles shaders whose text has changed, once there is something that is drawn with them.
     #[cfg(feature = "shaderc")]
     pub(super) fn compile(&mut self) -> Result<()> {
+        use crate::view::context::Context;
         use crate::view::stage::{Stage, style};
+        use crate::view::workers::Entrance;
         use hullform::gpu::{CachePipelines, Pipelines, Residence, shaders};
 
         let Some(folder) = self.live.folder.clone() else {
@@ -59,9 +61,9 @@ impl Program {
                 })
             })
             .collect();
-        let context = self.context.clone();
-        let work = move || {
+        let work = move |entrance: &Entrance<Context>| {
             let glsl = shaders::Glsl::read(&folder)?;
+            let context = entrance.enter()?;
             let of = context.shaders().modules;
             let from: &dyn shaders::Modules = &glsl;
             let other = |name: &String| of.fingerprint(name) != from.fingerprint(name);
@@ -132,7 +134,8 @@ impl Program {
             self.viewer.notices.tell(words);
         }
         self.live.filling += u64::from(fills);
-        self.context.exchange(glsl, pipelines);
+        let old = self.context.exchange(glsl, pipelines);
+        self.workers.let_go(old);
         self.failed = Default::default();
         self.fresh = true;
     }

@@ -1,25 +1,38 @@
 //! What workers are asked for.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use hullform::Result;
 use hullform::host::Style;
 use hullform::mesh::Model;
+use hullform::plan::Database;
 
 use super::{Done, Program};
+use crate::db::database;
 use crate::model;
-use crate::view::context::{Drawn, under_scheme};
+use crate::view::context::{Context, Readied, under_scheme};
 use crate::view::errors::{self, Measured, Subject};
 use crate::view::part::Part;
-use crate::view::stage::{Stage, Staged};
+use crate::view::readings::grouped;
+use crate::view::stage::{Stage, Staged, style_of};
+use crate::view::workers::Entrance;
+
+/// How many pipelines are made at once: what one looks at now comes before what one has looked at.
+const MOST_PIPED: usize = 2;
+/// The vertices of the greatest surface that is measured: each takes some 100 bytes.
+const GREATEST_MEASURED: u64 = 4 << 20;
+/// How long what pipelines are made of is not written again.
+const BETWEEN_SAVES: Duration = Duration::from_secs(20);
 
 impl Program {
     /// Starts what is needed and not under way.
     pub fn start(&mut self) -> Result<()> {
         let numbers: Vec<u64> = self.viewer.parts.iter().map(Part::number).collect();
-        self.stage
-            .parts
-            .retain(|staged| numbers.contains(&staged.number));
+        let gone = self.stage.keep(&numbers);
+        if !gone.is_empty() {
+            self.workers.let_go(gone);
+        }
         self.deform();
         for place in 0..self.viewer.parts.len() {
             self.read(place)?;
@@ -27,6 +40,7 @@ impl Program {
         }
         self.pipe()?;
         self.compile()?;
+        self.keep()?;
         self.measure()
     }
 
@@ -54,8 +68,8 @@ impl Program {
         let path = part.path().map(std::path::Path::to_path_buf);
         let shape = self.shape.clone();
         let work = move || model::load(path.as_deref(), &shape);
-        self.workers
-            .start("read", work, move |result| Done::Read(number, result))
+        let told = move |result| Done::Read(number, result);
+        self.workers.start("read", move |_| work(), told)
     }
 
     fn build(&mut self, place: usize) -> Result<()> {
@@ -80,31 +94,29 @@ impl Program {
         let Some(history) = part.history() else {
             return Ok(());
         };
-        let (draft, context) = (history.draft().clone(), self.context.clone());
+        let draft = history.draft().clone();
         let (how, styles) = (self.shape.triangulate, self.styles());
-        let asked = wanted.clone();
-        let work = move || {
+        let (asked, dragged) = (wanted.clone(), history.is_dragging());
+        let database = self.database(dragged)?;
+        let work = move |entrance: &Entrance<Context>| {
             let span = tracing::debug_span!("connect").entered();
             let mesh = draft.mesh()?;
             let scheme = asked.scheme.unwrap_or(mesh.options().scheme);
             let model = Model::new(under_scheme(mesh, scheme, how)?);
             drop(span);
-            let place = |&recipe| context.place(&model, recipe);
-            let sides = asked
-                .recipes
-                .iter()
-                .map(place)
-                .collect::<Result<Vec<Drawn>>>()?;
-            for (drawn, style) in sides
-                .iter()
-                .flat_map(|d| styles.iter().map(move |s| (d, s)))
-            {
-                let style = Style {
-                    backend: drawn.surface.options().backend,
-                    residence: drawn.surface.options().residence,
-                    ..*style
-                };
-                context.make(drawn.surface.prepared(), style)?;
+            let mut sides = Vec::new();
+            for &recipe in &asked.recipes {
+                let readied = Readied::new(&model, recipe.method, &database)?;
+                let drawn = entrance.enter()?.place(&model, readied, recipe)?;
+                for style in &styles {
+                    let style = Style {
+                        backend: recipe.backend,
+                        residence: recipe.residence,
+                        ..*style
+                    };
+                    entrance.enter()?.make(drawn.surface.prepared(), style)?;
+                }
+                sides.push(drawn);
             }
             Ok((Arc::new(model), sides))
         };
@@ -112,26 +124,41 @@ impl Program {
         self.workers.start("build", work, told)
     }
 
+    /// Where plans are from: while something is dragged from one over this run's, which goes when that is over.
+    fn database(&mut self, dragged: bool) -> Result<Arc<Database>> {
+        let under = database()?;
+        if !dragged {
+            self.sketch = None;
+            return Ok(under.clone());
+        }
+        let over = || Arc::new(Database::over(under.clone()));
+        Ok(self.sketch.get_or_insert_with(over).clone())
+    }
+
     /// How surfaces are drawn that are not there yet.
     fn styles(&self) -> Vec<Style> {
-        let spacing = self.viewer.cutting.spacing;
-        let style = |fill| Style {
-            cull: self.viewer.cutting.cull.mode(),
-            ..Style::new(Default::default(), spacing, fill)
-        };
+        let style = |fill| style_of(Default::default(), &self.viewer, fill);
         Stage::fills(&self.viewer).into_iter().map(style).collect()
     }
 
     fn pipe(&mut self) -> Result<()> {
+        let wanted = self.stage.keys(&self.viewer);
+        let idle = self.context.give_up_but(&wanted);
+        if !idle.is_empty() {
+            self.workers.let_go(idle);
+        }
         for (part, side, style) in self.stage.missing(&self.viewer, &self.context) {
             let drawn = &self.stage.parts[part].sides[side];
             let key = drawn.key(style);
-            if self.running.piped.contains(&key) || self.failed.piped.contains(&key) {
+            let runs = self.running.piped.contains(&key) || self.failed.piped.contains(&key);
+            if runs || self.running.piped.len() >= MOST_PIPED {
                 continue;
             }
             self.running.piped.push(key.clone());
-            let (context, prepared) = (self.context.clone(), drawn.surface.prepared().clone());
-            let work = move || context.make(&prepared, style).map(drop);
+            let prepared = drawn.surface.prepared().clone();
+            let work = move |entrance: &Entrance<Context>| {
+                entrance.enter()?.make(&prepared, style).map(drop)
+            };
             let told = move |result| Done::Piped(key, result);
             self.workers.start("pipelines", work, told)?;
         }
@@ -168,7 +195,12 @@ impl Program {
     /// Captures what a map or the cursor asks for, one after the other, when nothing moves.
     fn measure(&mut self) -> Result<()> {
         let asked = self.viewer.compare.map.is_some() || self.probe.is_some();
+        self.unmeasured = false;
         if !asked || self.viewer.is_moving() || self.running.measured.is_some() {
+            return Ok(());
+        }
+        if self.is_at_work() || !self.is_whole() {
+            self.unmeasured = true;
             return Ok(());
         }
         let recipes = self.viewer.recipes().len();
@@ -193,7 +225,7 @@ impl Program {
                     if mapped && free && measured.errors.get().is_none() {
                         let measured = measured.clone();
                         self.running.compared = Some(measured.clone());
-                        let work = move || {
+                        let work = move |_: &Entrance<Context>| {
                             measured.compare();
                             Ok(())
                         };
@@ -201,10 +233,37 @@ impl Program {
                     }
                 }
                 None if self.failed.measured.contains(&subject) => {}
+                None if staged.vertices(side) > GREATEST_MEASURED => {
+                    return self.is_too_fine(subject);
+                }
                 None => return self.start_measure(subject),
             }
         }
         Ok(())
+    }
+
+    /// Says that something is not measured.
+    fn is_too_fine(&mut self, subject: Subject) -> Result<()> {
+        let most = grouped(GREATEST_MEASURED);
+        let words = format!(
+            "errors and what is under the cursor are told up to {most} vertices; choose a lower level"
+        );
+        self.failed.measured.truncate(8);
+        self.failed.measured.insert(0, subject);
+        self.viewer.notices.tell(words);
+        Ok(())
+    }
+
+    /// Writes what pipelines are made of, where there are others by now; not more often than it is worth.
+    fn keep(&mut self) -> Result<()> {
+        let made = self.context.made();
+        let late = self.saved.is_none_or(|last| last.elapsed() > BETWEEN_SAVES);
+        if made == self.saved_pipelines || !late || !self.running.is_idle() {
+            return Ok(());
+        }
+        (self.saved, self.saved_pipelines) = (Some(Instant::now()), made);
+        let work = |entrance: &Entrance<Context>| Ok(entrance.enter()?.save_cache());
+        self.workers.start("keep", work, |_| Done::Kept)
     }
 
     fn start_measure(&mut self, subject: Subject) -> Result<()> {
@@ -216,12 +275,10 @@ impl Program {
         let mut draft = history.draft().clone();
         draft.positions = Arc::new(part.points().to_vec());
         self.running.measured = Some(subject.clone());
-        let (context, how, asked) = (
-            self.context.clone(),
-            self.shape.triangulate,
-            subject.clone(),
-        );
-        let work = move || errors::measure(&context, &draft, how, asked).map(Arc::new);
+        let (how, asked) = (self.shape.triangulate, subject.clone());
+        let work = move |entrance: &Entrance<Context>| {
+            errors::measure(entrance, &draft, how, asked).map(Arc::new)
+        };
         let told = move |result| Done::Measured(Box::new(subject), result);
         self.workers.start("measure", work, told)
     }

@@ -62,14 +62,18 @@ impl Program {
                 match result {
                     Ok(measured) => {
                         self.kept.insert(0, measured);
-                        self.kept.truncate(6);
+                        let few = few(self.kept.iter().map(|kept| kept.surface.points.len()));
+                        self.kept.truncate(few);
                     }
                     Err(error) => {
-                        self.failed.measured.push(*subject);
+                        // Others than the latest are not asked for again.
+                        self.failed.measured.truncate(8);
+                        self.failed.measured.insert(0, *subject);
                         return self.fails(error);
                     }
                 }
             }
+            Done::Kept => {}
             Done::Compiled(result) => return self.take_compiled(result),
             Done::Compared(result) => {
                 self.running.compared = None;
@@ -144,11 +148,9 @@ impl Program {
                 for refusal in sides.iter().flat_map(|drawn| &drawn.refusals) {
                     self.viewer.notices.warn(refusal.clone());
                 }
-                self.stage.parts.retain(|staged| staged.number != number);
-                self.stage
-                    .parts
-                    .push(Staged::new(number, model, wanted, sides));
-                self.stage.parts.sort_by_key(|staged| staged.number);
+                let staged = Staged::new(number, model, wanted, sides);
+                let old = self.stage.put(staged);
+                self.workers.let_go(old);
                 self.fresh = true;
                 Ok(())
             }
@@ -162,5 +164,32 @@ impl Program {
                 Ok(())
             }
         }
+    }
+}
+
+/// The points of all measurements that are kept, at most.
+const GREATEST_KEPT: usize = 8 << 20;
+/// How many are kept, at most.
+const MOST_KEPT: usize = 6;
+
+/// How many of measurements are kept that have so many points each, the latest first: that one always.
+fn few(points: impl Iterator<Item = usize>) -> usize {
+    let sums = points.scan(0, |sum, points| {
+        *sum += points;
+        Some(*sum)
+    });
+    let fits = |&sum: &usize| sum <= GREATEST_KEPT;
+    sums.take(MOST_KEPT).take_while(fits).count().max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_measurements_few_are_kept_and_fewer_of_great_ones() {
+        assert_eq!(few([10; 9].into_iter()), MOST_KEPT);
+        assert_eq!(few([GREATEST_KEPT / 3; 9].into_iter()), 3);
+        assert_eq!(few([2 * GREATEST_KEPT; 2].into_iter()), 1);
     }
 }

@@ -1,0 +1,191 @@
+// Which patches are not drawn, before anything of them is computed. Twin of `frame/culling.rs`, which tells why.
+#ifndef CULLING_GLSL
+#define CULLING_GLSL
+
+#include "lib/deciding.glsl"
+
+// The share of a limit that vertices have which are not the face's own.
+const float FOREIGN = 0.35;
+// A thousandth of the picture, on either side.
+const float BESIDE = 0.002;
+const float ROUNDING = 1e-6;
+const float EDGEWISE = 0.02;
+// Pixels.
+const float BETWEEN = 1.0 / 16.0;
+
+// Vertex i of those that bound a patch.
+vec3 hull_point(Patch record, uint i) { return positions[words[bases.controls + record.controls + i]]; }
+
+// How far within a plane a point may be, in the plane's own units.
+float inside_of(vec4 plane, vec4 depth, float reach, vec3 point) {
+    vec3 summands = abs(plane.xyz * point);
+    float rounding = ROUNDING * (summands.x + summands.y + summands.z + abs(plane.w));
+    return before(plane, point) + reach + rounding + BESIDE * abs(before(depth, point));
+}
+
+// The greatest of these of a patch's own vertices: those of the edges, or faces, that its edges belong to.
+float own_inside(PatchSides sides, vec4 plane, vec4 depth, float reach) {
+    float greatest = -3.4e38;
+    for (uint side = 0u; side < 4u; ++side) {
+        uint place = side_list(sides.sides[side]);
+        uint count = words[place];
+        for (uint i = 1u; i <= count; ++i) {
+            greatest = max(greatest, inside_of(plane, depth, reach, positions[words[place + i]]));
+        }
+    }
+    return greatest;
+}
+
+// Whether a patch is outside of one side of the picture.
+bool is_outside(Patch record, PatchSides sides, uint hull, uint seen) {
+    mat4 clip = views[seen].clip_from_model;
+    vec4 depth = row_of(clip, 3u);
+    float height = abs(views[seen].displacement.x);
+    for (uint side = 0u; side < 6u; ++side) {
+        vec4 across = row_of(clip, side >> 1u);
+        // w + x, w - x, w + y, w - y, z, w - z.
+        vec4 plane = side == 4u ? across : (side & 1u) == 0u ? depth + across : depth - across;
+        float reach = height * sqrt(squared(plane.xyz));
+        float own = own_inside(sides, plane, depth, reach);
+        uint count = own < 0.0 ? hull : 0u;
+        float all = own;
+        for (uint i = 0u; i < count; ++i) all = max(all, inside_of(plane, depth, reach, hull_point(record, i)));
+        if (own < 0.0 && own + FOREIGN * (all - own) < 0.0) return true;
+    }
+    return false;
+}
+
+// Whether no sample is in the box around the picture of a patch.
+bool is_small(Patch record, uint hull, uint seen) {
+    float rows = float(decision.flags >> DECIDE_ROWS_SHIFT & 15u);
+    mat4 clip = views[seen].clip_from_model;
+    vec4 depth = row_of(clip, 3u);
+    float height = abs(views[seen].displacement.x);
+    float away = height * sqrt(squared(depth.xyz));
+    for (uint axis = 0u; axis < 2u; ++axis) {
+        vec4 row = row_of(clip, axis);
+        float reach = height * sqrt(squared(row.xyz));
+        float low = 3.4e38;
+        float high = -3.4e38;
+        bool before_eye = true;
+        for (uint i = 0u; i < hull; ++i) {
+            vec3 point = hull_point(record, i);
+            float at = before(row, point);
+            float w = before(depth, point);
+            before_eye = before_eye && w - away > 1e-3 * abs(w);
+            low = min(low, (at - reach) / (at < reach ? w - away : w + away));
+            high = max(high, (at + reach) / (at > -reach ? w - away : w + away));
+        }
+        if (!before_eye) return false;
+        float first = (low * (0.5 * decision.size[axis]) + 0.5 * decision.size[axis] - BETWEEN) * rows - 0.5;
+        float last = (high * (0.5 * decision.size[axis]) + 0.5 * decision.size[axis] + BETWEEN) * rows - 0.5;
+        // In floats that tell pixels apart.
+        if (last - first < 1.0 && abs(first) < 65536.0 * rows && floor(first) == floor(last)) return true;
+    }
+    return false;
+}
+
+// The axis of the cone around vectors and all that is within `slant` of their hull, and the sine of the angle to its side; more than 1 where it is no cone.
+vec4 cone(vec3 vectors[12], float slant) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < 12u; ++i) sum += vectors[i];
+    vec3 axis = sum / sqrt(squared(sum));
+    float tangent = 0.0;
+    bool is_cone = true;
+    for (uint i = 0u; i < 12u; ++i) {
+        float along = dot(axis, vectors[i]);
+        float across = sqrt(squared(vectors[i] - along * axis)) + slant;
+        // Not what is no number.
+        is_cone = is_cone && along - slant > 0.0;
+        tangent = max(tangent, across / (along - slant));
+    }
+    return vec4(axis, is_cone ? tangent / sqrt(1.0 + tangent * tangent) : 2.0);
+}
+
+// A row over the greatest of its numbers.
+vec4 scaled_row(vec4 row) { return row / max(max(abs(row.x), abs(row.y)), max(abs(row.z), abs(row.w))); }
+
+// Where everything is seen from, homogeneous.
+vec4 eye_of(mat4 clip) {
+    vec4 a = scaled_row(row_of(clip, 0u));
+    vec4 b = scaled_row(row_of(clip, 1u));
+    vec4 c = scaled_row(row_of(clip, 3u));
+    vec3 bc = cross(b.xyz, c.xyz);
+    vec3 eye = -(a.w * bc + b.w * cross(c.xyz, a.xyz) + c.w * cross(a.xyz, b.xyz));
+    return vec4(eye, dot(a.xyz, bc));
+}
+
+// The lengths of the second differences of control points: the greatest along u twice, along both, along v twice.
+vec3 second_differences(vec3 points[16]) {
+    vec3 greatest = vec3(0.0);
+    for (uint i = 0u; i < 8u; ++i) {
+        uint row = 4u * (i >> 1u) + (i & 1u);
+        uint column = (i >> 1u) + 4u * (i & 1u);
+        vec3 along_u = (points[row] - points[row + 1u]) - (points[row + 1u] - points[row + 2u]);
+        vec3 along_v = (points[column] - points[column + 4u]) - (points[column + 4u] - points[column + 8u]);
+        greatest.x = max(greatest.x, squared(along_u));
+        greatest.z = max(greatest.z, squared(along_v));
+    }
+    for (uint i = 0u; i < 9u; ++i) {
+        uint at = i % 3u + 4u * (i / 3u);
+        vec3 both = (points[at + 5u] - points[at + 4u]) - (points[at + 1u] - points[at]);
+        greatest.y = max(greatest.y, squared(both));
+    }
+    return sqrt(greatest);
+}
+
+// The Bezier points of a bicubic B-spline patch.
+void make_bezier(inout vec3 points[16]) {
+    for (uint i = 0u; i < 8u; ++i) {
+        uint step = i < 4u ? 1u : 4u;
+        uint first = i < 4u ? 4u * i : i - 4u;
+        vec3 a = points[first];
+        vec3 b = points[first + step];
+        vec3 c = points[first + 2u * step];
+        vec3 d = points[first + 3u * step];
+        points[first] = ((a + c) + 4.0 * b) / 6.0;
+        points[first + step] = (2.0 * b + c) / 3.0;
+        points[first + 2u * step] = (b + 2.0 * c) / 3.0;
+        points[first + 3u * step] = ((b + d) + 4.0 * c) / 6.0;
+    }
+}
+
+// Whether all triangles of a bicubic B-spline patch with these levels show their backs.
+bool is_back(Patch record, uint seen, vec4 edges, float inside) {
+    if (views[seen].displacement.x != 0.0) return false;
+    vec3 points[16];
+    for (uint i = 0u; i < 16u; ++i) points[i] = hull_point(record, i);
+    make_bezier(points);
+    vec2 slants = vec2(0.0);
+    if (edges != vec4(inside)) {
+        if ((decision.flags & FRAME_FRACTIONAL_EVEN) != 0u) return false;
+        float least = ceil(min(min(edges.x, edges.y), min(edges.z, edges.w)));
+        float slant = 1.0 + ceil(inside) / least;
+        vec3 second = second_differences(points);
+        slants = slant * (4.0 / least * second.xz + 3.0 * second.y / ceil(inside));
+    }
+    vec3 along_u[12];
+    vec3 along_v[12];
+    for (uint i = 0u; i < 12u; ++i) {
+        uint u = i % 3u + 4u * (i / 3u);
+        uint v = i / 3u + 4u * (i % 3u);
+        along_u[i] = points[u + 1u] - points[u];
+        along_v[i] = points[v + 4u] - points[v];
+    }
+    vec4 u = cone(along_u, slants.y);
+    vec4 v = cone(along_v, slants.x);
+    vec3 normal = cross(u.xyz, v.xyz);
+    float sine = sqrt(squared(normal));
+    float spread = sqrt(u.w * u.w + 2.0 * u.w * v.w * abs(dot(u.xyz, v.xyz)) + v.w * v.w) / sine + EDGEWISE;
+    if (!(spread < 1.0)) return false;
+    vec4 eye = eye_of(views[seen].clip_from_model);
+    bool back = true;
+    for (uint i = 0u; i < 16u; ++i) {
+        vec3 to_eye = eye.xyz - eye.w * points[i];
+        // What is no number is not below either.
+        back = back && dot(normal, to_eye) < -spread * sine * sqrt(squared(to_eye));
+    }
+    return back;
+}
+
+#endif

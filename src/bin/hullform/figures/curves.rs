@@ -1,0 +1,283 @@
+//! How far the triangles of each method are from the limit, and what a frame of them costs, over their number.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::{DVec3, Vec2};
+use hullform::abi;
+use hullform::mesh::Model;
+use hullform::method::{METHODS, Method, MethodOptions, Pass, to_ptex};
+use hullform::subdivision::LimitSurface;
+use hullform::tessellation::Domain;
+use plotters::prelude::*;
+use serde_json::Value;
+
+use super::figure::{Curves, Results};
+use super::make::name;
+use super::run::{self, Words};
+use crate::options::{Global, Shape, Triangulate};
+use crate::{model, output};
+
+/// Segments of a face's edge.
+const LEVELS: [u32; 5] = [1, 2, 4, 8, 16];
+const QUICK: [u32; 3] = [1, 4, 8];
+/// The triangles that are looked at, of each method and level: the truth takes its time.
+const TRIANGLES: usize = 4000;
+
+/// A method at a level.
+struct Point {
+    method: &'static str,
+    level: u32,
+    triangles: usize,
+    /// The root of the mean square of the distances, over the diagonal.
+    rms: f64,
+    /// The greatest of them.
+    maximum: f64,
+    milliseconds: Option<f64>,
+}
+
+/// Measures all methods that can draw the model, and writes a plot and a table; their names.
+pub fn make(curves: &Curves, words: &Words, global: &Global) -> Result<Vec<String>, String> {
+    let levels: &[u32] = if words.quick { &QUICK } else { &LEVELS };
+    let named = words.arguments(curves.model)?.remove(0);
+    let shape = Shape {
+        scheme: Some(curves.scheme.into()),
+        triangulate: Triangulate::ShortestDiagonal,
+    };
+    let mesh = model::load(Some(Path::new(&named)), &shape).map_err(|error| error.to_string())?;
+    let model = Model::new(mesh);
+    let truth = LimitSurface::new(model.mesh());
+    let mut points = Vec::new();
+    for method in METHODS {
+        for &level in levels {
+            points.extend(measure(method, &model, &truth, level));
+        }
+    }
+    let costs = costs(curves, &named, levels, words, global)?;
+    for point in &mut points {
+        let row = costs.row("bench", point.method, Some(f64::from(point.level)), None);
+        point.milliseconds = row.and_then(|row| costs.milliseconds("bench", row));
+    }
+    let device = costs.0["bench"]["device"].as_str().unwrap_or_default();
+    let title = format!("{}, {}, {device}", name(Path::new(&named)), curves.scheme);
+    let drawn = svg(&title, &points).map_err(|error| error.to_string())?;
+    let stem = format!("methods-{}", curves.name);
+    let mut names = Vec::new();
+    for (ending, text) in [("svg", drawn), ("csv", table(&points))] {
+        let path = words.output.join(format!("{stem}.{ending}"));
+        let written = output::replace(&path, text.as_bytes());
+        written.map_err(|error| format!("{}: {error}", path.display()))?;
+        names.push(name(&path));
+    }
+    Ok(names)
+}
+
+/// What frames cost, from patterns: so a level has as many triangles whatever cuts them.
+fn costs(
+    curves: &Curves,
+    named: &str,
+    levels: &[u32],
+    words: &Words,
+    global: &Global,
+) -> Result<Results, String> {
+    let levels: Vec<String> = levels.iter().map(u32::to_string).collect();
+    let frames = if words.quick { "2" } else { "5" };
+    let arguments = [
+        "bench",
+        named,
+        "--scheme",
+        curves.scheme,
+        "--backend",
+        "pattern",
+        "--residence",
+        "cache",
+        "--levels",
+        &levels.join(","),
+        "--frames",
+        frames,
+    ];
+    let arguments = arguments.map(String::from);
+    let value: Value = run::run(global, &arguments, &[], true)?;
+    Ok(Results([("bench", value)].into()))
+}
+
+/// The distance between the middles of triangles and the limit there; None where the method refuses the model.
+fn measure(method: &Method, model: &Model, truth: &LimitSurface, level: u32) -> Option<Point> {
+    let prepared = method.prepare(model, MethodOptions::default()).ok()?;
+    let controls = prepared.controls(model.positions());
+    let triangles: Vec<(&Pass, usize, [Vec2; 3])> = prepared
+        .passes
+        .iter()
+        .flat_map(|pass| (0..pass.patches.len()).map(move |patch| (pass, patch)))
+        .flat_map(|(pass, patch)| {
+            let halved = pass.patches[patch].flags & (abi::PATCH_HALF | abi::PATCH_REFINED) != 0;
+            let segments = if halved { level.div_ceil(2) } else { level };
+            lattice(pass.domain, segments)
+                .into_iter()
+                .map(move |corners| (pass, patch, corners))
+        })
+        .collect();
+    let step = triangles.len().div_ceil(TRIANGLES).max(1);
+    // A stride that shares nothing with the size of a patch would do; an odd one nearly does.
+    let chosen: Vec<_> = triangles.iter().step_by(step | 1).collect();
+    let places: Vec<(usize, [f64; 2])> = chosen
+        .iter()
+        .map(|(pass, patch, corners)| {
+            let record = &pass.patches[*patch];
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let uv = to_ptex(record, middle.to_array());
+            (record.ptex as usize, uv.map(f64::from))
+        })
+        .collect();
+    let (mut squares, mut maximum, mut count) = (0.0, 0.0f64, 0);
+    for ((pass, patch, corners), sample) in chosen.into_iter().zip(truth.evaluate_all(&places)) {
+        let Some(sample) = sample else { continue };
+        let at = |uv: &Vec2| pass.evaluate(&controls, *patch, *uv).position.as_dvec3();
+        let middle = corners.iter().map(at).sum::<DVec3>() / 3.0;
+        let right = model.placement().local(sample.position);
+        let distance = middle.distance(right) / model.diagonal().max(f64::MIN_POSITIVE);
+        squares += distance * distance;
+        maximum = maximum.max(distance);
+        count += 1;
+    }
+    (count > 0).then(|| Point {
+        method: method.name,
+        level,
+        triangles: triangles.len(),
+        rms: (squares / f64::from(count)).sqrt(),
+        maximum,
+        milliseconds: None,
+    })
+}
+
+/// The triangles of a patch whose edges have so many segments.
+fn lattice(domain: Domain, segments: u32) -> Vec<[Vec2; 3]> {
+    let at = |i: u32, j: u32| Vec2::new(i as f32, j as f32) / segments as f32;
+    let mut triangles = Vec::new();
+    for j in 0..segments {
+        let row = match domain {
+            Domain::Quads => segments,
+            Domain::Triangles => segments - j,
+        };
+        for i in 0..row {
+            triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+            if domain == Domain::Quads || i + 1 < row {
+                triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+    }
+    triangles
+}
+
+fn table(points: &[Point]) -> String {
+    let mut text = String::from("method,level,triangles,rms,maximum,milliseconds\n");
+    for point in points {
+        let milliseconds = point
+            .milliseconds
+            .map_or(String::new(), |ms| ms.to_string());
+        let _ = writeln!(
+            text,
+            "{},{},{},{:e},{:e},{milliseconds}",
+            point.method, point.level, point.triangles, point.rms, point.maximum
+        );
+    }
+    text
+}
+
+/// Both plots side by side, all axes logarithmic.
+fn svg(title: &str, points: &[Point]) -> Result<String, Box<dyn Error>> {
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, (1200, 560)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let halves = root.titled(title, ("sans-serif", 18))?.split_evenly((1, 2));
+        let rms = |point: &Point| Some(point.rms);
+        plot(
+            &halves[0],
+            "distance from the limit over the diagonal, RMS",
+            points,
+            SeriesLabelPosition::LowerLeft,
+            rms,
+        )?;
+        plot(
+            &halves[1],
+            "milliseconds a frame, the least",
+            points,
+            SeriesLabelPosition::UpperLeft,
+            |point| point.milliseconds,
+        )?;
+        root.present()?;
+    }
+    Ok(text)
+}
+
+fn plot(
+    area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
+    what: &str,
+    points: &[Point],
+    legend: SeriesLabelPosition,
+    value: impl Fn(&Point) -> Option<f64>,
+) -> Result<(), Box<dyn Error>> {
+    let known = |point: &Point| value(point).filter(|&value| value > 0.0);
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        match low.is_finite() {
+            true => (low / 1.5)..(high * 1.5).max(10.0 * low),
+            false => 1.0..10.0,
+        }
+    };
+    let across = range(&mut points.iter().map(|point| point.triangles as f64));
+    let up = range(&mut points.iter().filter_map(known));
+    let mut chart = ChartBuilder::on(area)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(70)
+        .build_cartesian_2d(across.log_scale(), up.log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc("triangles")
+        .y_desc(what)
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .x_label_formatter(&|x| format!("{x:.0e}"))
+        .draw()?;
+    for (number, method) in METHODS.iter().enumerate() {
+        let of_method = points.iter().filter(|point| point.method == method.name);
+        let line: Vec<(f64, f64)> = of_method
+            .filter_map(|point| Some((point.triangles as f64, known(point)?)))
+            .collect();
+        if line.is_empty() {
+            continue;
+        }
+        let colour = Palette99::pick(number).to_rgba();
+        chart
+            .draw_series(LineSeries::new(line, colour.stroke_width(2)).point_size(3))?
+            .label(method.name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    }
+    chart
+        .configure_series_labels()
+        .position(legend)
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK.mix(0.3))
+        .draw()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lattices_cover_their_domain() {
+        for (domain, area, each) in [(Domain::Quads, 1.0, 2), (Domain::Triangles, 0.5, 1)] {
+            let triangles = lattice(domain, 4);
+            assert_eq!(triangles.len(), each * 16);
+            let of = |[a, b, c]: &[Vec2; 3]| 0.5 * (b - a).perp_dot(c - a);
+            assert!(triangles.iter().all(|triangle| of(triangle) > 0.0));
+            assert!((triangles.iter().map(of).sum::<f32>() - area).abs() < 1e-6);
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! `--cull`: what is left out of a picture.
+
+use std::str::FromStr;
+
+use super::Cull;
+
+/// What is left out: triangles that show one side, and patches of which nothing is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Culling {
+    /// Triangles; and with those that show their backs, patches that show nothing else.
+    pub triangles: Cull,
+    /// Patches outside of the picture.
+    pub frustum: bool,
+    /// Patches between samples.
+    pub small: bool,
+}
+
+impl Culling {
+    /// Whether patches are left out that triangles would not be.
+    pub fn needs_decisions(self) -> bool {
+        self.frustum || self.small
+    }
+}
+
+impl FromStr for Culling {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Culling, String> {
+        let mut culling = Culling::default();
+        let mut sides = Vec::new();
+        for word in text.split(',') {
+            match word {
+                "none" if text == "none" => {}
+                "back" => sides.push(Cull::Back),
+                "front" => sides.push(Cull::Front),
+                "frustum" => culling.frustum = true,
+                "small" => culling.small = true,
+                "all" => {
+                    sides.push(Cull::Back);
+                    (culling.frustum, culling.small) = (true, true);
+                }
+                _ => {
+                    return Err(format!(
+                        "'{word}' is none of none, frustum, back, small, all and front"
+                    ));
+                }
+            }
+        }
+        culling.triangles = sides.first().copied().unwrap_or_default();
+        if sides.iter().any(|&side| side != culling.triangles) {
+            return Err("without backs and without fronts nothing is left".into());
+        }
+        Ok(culling)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_lists_of_them() {
+        let culling = |triangles, frustum, small| Culling {
+            triangles,
+            frustum,
+            small,
+        };
+        for (text, right) in [
+            ("none", culling(Cull::None, false, false)),
+            ("back", culling(Cull::Back, false, false)),
+            ("front,frustum", culling(Cull::Front, true, false)),
+            ("small", culling(Cull::None, false, true)),
+            ("frustum,back,small", culling(Cull::Back, true, true)),
+            ("all", culling(Cull::Back, true, true)),
+        ] {
+            assert_eq!(text.parse(), Ok(right), "{text}");
+        }
+        for wrong in [
+            "",
+            "behind",
+            "back,",
+            "none,back",
+            "front,back",
+            "all,front",
+        ] {
+            assert!(wrong.parse::<Culling>().is_err(), "{wrong}");
+        }
+    }
+}

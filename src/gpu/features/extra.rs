@@ -1,0 +1,164 @@
+//! Features that none of our own shaders use.
+
+use std::ffi::CStr;
+
+use ash::{ext, khr, vk};
+
+use crate::gpu::features::extension::has_extension;
+
+/// Features that are there on request: our own shaders use none of them, the conformance suite does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExtraFeatures {
+    /// Reads and writes beyond a buffer's end do no harm (`robustBufferAccess`). Every device has it; some are slower with it.
+    pub robust_buffer_access: bool,
+    /// Shaders may speak the Vulkan memory model (`vulkanMemoryModel`), for atomic operations as well (`vulkanMemoryModelDeviceScope`).
+    ///
+    /// With the first of the two alone our shaders are not valid: their atomic operations have device scope
+    /// (VUID-RuntimeSpirv-vulkanMemoryModel-06265).
+    pub vulkan_memory_model: bool,
+    /// Shaders may clip primitives and leave them out (`shaderClipDistance`, `shaderCullDistance`).
+    pub clip_and_cull_distances: bool,
+    /// Points of any size, which evaluation shaders say (`largePoints`, `shaderTessellationAndGeometryPointSize`).
+    pub point_sizes: bool,
+    /// Occlusion queries that count samples (`occlusionQueryPrecise`).
+    pub precise_occlusion: bool,
+    /// Vertices are captured before the rasteriser (`VK_EXT_transform_feedback`).
+    pub transform_feedback: bool,
+    /// Draws say of how many control points their patches are (`VK_EXT_extended_dynamic_state2`).
+    pub dynamic_patch_size: bool,
+    /// Pipelines are linked from parts (`VK_EXT_graphics_pipeline_library`).
+    pub pipeline_libraries: bool,
+}
+
+impl ExtraFeatures {
+    /// The device extensions to enable for these.
+    pub fn extensions(&self) -> Vec<&'static CStr> {
+        let mut named = Vec::new();
+        if self.transform_feedback {
+            named.push(ext::transform_feedback::NAME);
+        }
+        if self.dynamic_patch_size {
+            named.push(ext::extended_dynamic_state2::NAME);
+        }
+        if self.pipeline_libraries {
+            named.push(khr::pipeline_library::NAME);
+            named.push(ext::graphics_pipeline_library::NAME);
+        }
+        named
+    }
+
+    /// Which of them a device has.
+    ///
+    /// # Safety
+    /// `physical` belongs to the live `instance`, and has this version.
+    pub(super) unsafe fn query(
+        instance: &ash::Instance,
+        physical: vk::PhysicalDevice,
+        api_version: u32,
+    ) -> ExtraFeatures {
+        // SAFETY: the caller's. A device that fails to answer goes without.
+        let has = |name| unsafe { has_extension(instance, physical, name) } == Ok(true);
+        let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
+        let mut chain = ExtraChain {
+            feedback: has(ext::transform_feedback::NAME).then(Default::default),
+            dynamic_state: has(ext::extended_dynamic_state2::NAME).then(Default::default),
+            libraries: (has(khr::pipeline_library::NAME)
+                && has(ext::graphics_pipeline_library::NAME))
+            .then(Default::default),
+        };
+        let mut features = vk::PhysicalDeviceFeatures2::default();
+        if api_version >= vk::API_VERSION_1_2 {
+            features = features.push_next(&mut model);
+        }
+        if let Some(feedback) = &mut chain.feedback {
+            features = features.push_next(feedback);
+        }
+        if let Some(dynamic) = &mut chain.dynamic_state {
+            features = features.push_next(dynamic);
+        }
+        if let Some(libraries) = &mut chain.libraries {
+            features = features.push_next(libraries);
+        }
+        // SAFETY: the caller's; each struct in the chain is one that the device knows and outlives the call.
+        unsafe { instance.get_physical_device_features2(physical, &mut features) };
+        let core = features.features;
+        ExtraFeatures {
+            robust_buffer_access: core.robust_buffer_access != 0,
+            vulkan_memory_model: model.vulkan_memory_model != 0
+                && model.vulkan_memory_model_device_scope != 0,
+            clip_and_cull_distances: core.shader_clip_distance != 0
+                && core.shader_cull_distance != 0,
+            point_sizes: core.large_points != 0
+                && core.shader_tessellation_and_geometry_point_size != 0,
+            precise_occlusion: core.occlusion_query_precise != 0,
+            transform_feedback: chain
+                .feedback
+                .is_some_and(|own| own.transform_feedback != 0),
+            dynamic_patch_size: chain
+                .dynamic_state
+                .is_some_and(|own| own.extended_dynamic_state2_patch_control_points != 0),
+            pipeline_libraries: chain
+                .libraries
+                .is_some_and(|own| own.graphics_pipeline_library != 0),
+        }
+    }
+
+    /// Sets those that have members in these structs; clears nothing.
+    pub(super) fn switch_on(
+        &self,
+        core: &mut vk::PhysicalDeviceFeatures,
+        vulkan12: &mut vk::PhysicalDeviceVulkan12Features<'_>,
+    ) {
+        let set = |field: &mut vk::Bool32, wanted: bool| *field |= vk::Bool32::from(wanted);
+        set(&mut core.robust_buffer_access, self.robust_buffer_access);
+        set(&mut vulkan12.vulkan_memory_model, self.vulkan_memory_model);
+        let scope = &mut vulkan12.vulkan_memory_model_device_scope;
+        set(scope, self.vulkan_memory_model);
+        set(&mut core.shader_clip_distance, self.clip_and_cull_distances);
+        set(&mut core.shader_cull_distance, self.clip_and_cull_distances);
+        set(&mut core.large_points, self.point_sizes);
+        let size = &mut core.shader_tessellation_and_geometry_point_size;
+        set(size, self.point_sizes);
+        set(&mut core.occlusion_query_precise, self.precise_occlusion);
+    }
+}
+
+/// The structs of those that have one.
+#[derive(Default)]
+pub(super) struct ExtraChain {
+    feedback: Option<vk::PhysicalDeviceTransformFeedbackFeaturesEXT<'static>>,
+    dynamic_state: Option<vk::PhysicalDeviceExtendedDynamicState2FeaturesEXT<'static>>,
+    libraries: Option<vk::PhysicalDeviceGraphicsPipelineLibraryFeaturesEXT<'static>>,
+}
+
+impl ExtraChain {
+    pub(super) fn new(extra: ExtraFeatures) -> ExtraChain {
+        let feedback =
+            vk::PhysicalDeviceTransformFeedbackFeaturesEXT::default().transform_feedback(true);
+        let dynamic = vk::PhysicalDeviceExtendedDynamicState2FeaturesEXT::default()
+            .extended_dynamic_state2_patch_control_points(true);
+        let libraries = vk::PhysicalDeviceGraphicsPipelineLibraryFeaturesEXT::default()
+            .graphics_pipeline_library(true);
+        ExtraChain {
+            feedback: extra.transform_feedback.then_some(feedback),
+            dynamic_state: extra.dynamic_patch_size.then_some(dynamic),
+            libraries: extra.pipeline_libraries.then_some(libraries),
+        }
+    }
+
+    pub(super) fn chain<'a>(
+        &'a mut self,
+        mut info: vk::DeviceCreateInfo<'a>,
+    ) -> vk::DeviceCreateInfo<'a> {
+        if let Some(feedback) = &mut self.feedback {
+            info = info.push_next(feedback);
+        }
+        if let Some(dynamic) = &mut self.dynamic_state {
+            info = info.push_next(dynamic);
+        }
+        if let Some(libraries) = &mut self.libraries {
+            info = info.push_next(libraries);
+        }
+        info
+    }
+}

@@ -14,7 +14,8 @@ use crate::tessellation::{Levels, levels_of_edges};
 /// By what the device decides about patches, in each view by itself. A level belongs to an edge of the mesh and depends on nothing but its ends, so both
 /// sides agree to the bit; where levels are not whole, spacing is fractional and nothing pops.
 ///
-/// What is left out is left out before its control points are computed, and conservatively: pictures stay the same, pixel by pixel.
+/// What is left out is left out before its control points are computed, and conservatively: pictures stay the same, pixel by pixel; but where
+/// [`back`](Self::back) says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decision {
     /// Levels; none is above the cut's.
@@ -24,6 +25,7 @@ pub struct Decision {
     pub frustum: bool,
     /// Whether patches are left out that show nothing but their backs, for pipelines that cull these (`gpu::Target::cull`), in a
     /// viewport whose height is no negative one. By the cone of normals of B-spline patches; all others, and what is displaced, are drawn as they are.
+    /// Triangles much smaller than a pixel that rounding turns at a silhouette are not seen then.
     pub back: bool,
     /// Whether patches are left out that no sample can be in, for pipelines that fill triangles. By the hull, as beyond the picture.
     pub small: Option<Samples>,

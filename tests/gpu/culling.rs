@@ -135,7 +135,7 @@ fn assert_same_pictures(
 fn what_is_left_out_is_not_seen() {
     let Some(gpu) = Gpu::open() else { return };
     let views = std::env::var("HULLFORM_VIEWS").ok();
-    let views = views.map_or(60, |count| count.parse().expect("a number of views"));
+    let views = views.map_or(12, |count| count.parse().expect("a number of views"));
     let built_in =
         ["hull", "ngons", "creased-torus"].map(|name| (name.to_owned(), shapes::built_in(name)));
     let files = crate::common::obj_files("models").into_iter().map(|file| {

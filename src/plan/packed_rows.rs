@@ -31,10 +31,16 @@ pub struct PackedRows {
     pattern_lists: Lists,
     pattern_starts: Vec<u32>,
     known_patterns: KnownLists,
-    /// The database's pool that plans are of, and where its sets and patterns are here, as far as they are.
-    pool: Option<SharedPool>,
-    pool_sets: Vec<u32>,
-    pool_patterns: Vec<u32>,
+    /// The databases' pools that plans are of: one, or two where one database is over another.
+    pools: Vec<Known>,
+}
+
+/// Where the sets and patterns of a pool are here, as far as they are.
+#[derive(Clone, Debug)]
+struct Known {
+    pool: SharedPool,
+    sets: Vec<u32>,
+    patterns: Vec<u32>,
 }
 
 /// Instead of a place: there is none yet.
@@ -109,33 +115,40 @@ impl PackedRows {
     /// # Errors
     /// As for [`PackedRows::append`].
     pub(super) fn append_pooled(&mut self, own: &PooledRows) -> Result<()> {
-        if !self.pool.as_ref().is_some_and(|pool| pool.is(&own.pool)) {
-            self.pool = Some(own.pool.clone());
-            self.pool_sets.clear();
-            self.pool_patterns.clear();
-        }
+        let is_its = |known: &Known| known.pool.is(&own.pool);
+        let place = self.pools.iter().position(is_its);
+        let place = place.unwrap_or_else(|| {
+            self.pools.push(Known {
+                pool: own.pool.clone(),
+                sets: Vec::new(),
+                patterns: Vec::new(),
+            });
+            self.pools.len() - 1
+        });
+        // Taken out as long as other lists grow.
+        let mut known = self.pools.swap_remove(place);
         let pool = own.pool.read();
-        self.pool_sets.resize(pool.sets.len(), NONE);
-        self.pool_patterns.resize(pool.patterns.len(), NONE);
+        known.sets.resize(pool.sets.len(), NONE);
+        known.patterns.resize(pool.patterns.len(), NONE);
         for row in &own.rows {
             let (set, pattern) = StencilRows::parts(row);
-            let mut place = self.pool_sets[set as usize];
+            let mut place = known.sets[set as usize];
             if place == NONE {
                 let number = self.sets.push(pool.sets.get(set));
                 place = self.sets.start(number);
-                self.pool_sets[set as usize] = place;
+                known.sets[set as usize] = place;
             }
             let pattern = pattern.map(|pattern| {
-                let known = self.pool_patterns[pattern as usize];
-                if known != NONE {
-                    return known;
+                let place = &mut known.patterns[pattern as usize];
+                if *place == NONE {
+                    *place = self.push_pattern(pool.patterns.get(pattern));
                 }
-                let place = self.push_pattern(pool.patterns.get(pattern));
-                self.pool_patterns[pattern as usize] = place;
-                place
+                *place
             });
             self.push(row, place, pattern);
         }
+        drop(pool);
+        self.pools.push(known);
         self.check()
     }
 

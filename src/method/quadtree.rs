@@ -12,6 +12,7 @@ mod places;
 mod plain;
 mod planned;
 mod planner;
+mod run;
 mod store;
 mod subjects;
 mod surroundings;
@@ -102,7 +103,8 @@ fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
 }
 
 fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result<Prepared> {
-    let (prepared, _) = planned(model, options, database)?;
+    let (mut prepared, planner) = planned(model, options, database, false)?;
+    planner.give(&mut prepared.passes);
     // Passes without patches are left out.
     let Prepared {
         passes,
@@ -122,7 +124,7 @@ fn editable(
     options: MethodOptions,
     database: &Database,
 ) -> Result<(Prepared, Box<dyn Edits>)> {
-    let (prepared, planner) = planned(model, options, database)?;
+    let (prepared, planner) = planned(model, options, database, true)?;
     Ok((prepared, Box::new(planner)))
 }
 
@@ -148,11 +150,12 @@ impl Edits for Planner {
     }
 }
 
-/// All three passes, and what planned them.
+/// All three passes, and what planned them: with their tables where it keeps what edits need.
 fn planned(
     model: &Model,
     options: MethodOptions,
     database: &Database,
+    keeps: bool,
 ) -> Result<(Prepared, Planner)> {
     let options = options.plans.check()?;
     let started = Instant::now();
@@ -165,7 +168,7 @@ fn planned(
     };
     reserve(&mut passes[0], regular, 16);
     reserve(&mut passes[1], parts.len() - regular, RING);
-    let mut planner = Planner::new(options);
+    let mut planner = Planner::new(options, keeps);
     let faces: Vec<u32> = (0..model.topology().face_count() as u32).collect();
     let wanted = Wanted {
         faces: &faces,

@@ -20,6 +20,11 @@ impl Table {
             stride: size_of::<T>() / 4,
         }
     }
+
+    /// Elements of so many words, which are taken over: large tables are not there twice.
+    pub(super) fn of_words(words: Vec<u32>, stride: usize) -> Table {
+        Table { words, stride }
+    }
 }
 
 impl Table {

@@ -162,6 +162,11 @@ impl PackedRows {
         ]);
     }
 
+    /// The words of rows, sets and patterns, see [`RowsView`].
+    pub(crate) fn into_words(self) -> [Vec<u32>; 3] {
+        [self.rows.into_flattened(), self.sets.words, self.patterns]
+    }
+
     /// Whether places still fit into words.
     fn check(&self) -> Result<()> {
         check(self.sets.words.len())?;

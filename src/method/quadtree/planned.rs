@@ -34,8 +34,8 @@ impl Planned {
         counts
     }
 
-    /// Brings a pass' tables up to its plans and borders.
-    pub fn finish(&mut self, pass: &mut Pass, change: &mut PassChange) {
+    /// Brings what a pass knows of its slots up to its borders.
+    pub fn count(&mut self, pass: &mut Pass) {
         let Borders {
             records,
             uses,
@@ -54,6 +54,11 @@ impl Planned {
             u64::from(header.ring_size) * u64::from(stencils)
         });
         packed.rows.hold(products.max().unwrap_or(0));
+    }
+
+    /// Brings a pass' tables up to its plans and borders.
+    pub fn grow(&self, pass: &mut Pass, change: &mut PassChange) {
+        let (packed, borders) = (&self.store.packed, &self.borders);
         let rows = packed.rows.view();
         let tables = [
             Table::grown(&packed.nodes),
@@ -61,9 +66,9 @@ impl Planned {
             Table::grown(rows.rows),
             Table::grown(rows.sets),
             Table::grown(rows.patterns),
-            Table::grown(uses),
-            Table::grown(ends),
-            Table::grown(records),
+            Table::grown(&borders.uses),
+            Table::grown(&borders.ends),
+            Table::grown(&borders.records),
         ];
         for (number, (words, stride)) in tables.into_iter().enumerate() {
             if pass.tables.len() == number {
@@ -71,5 +76,22 @@ impl Planned {
             }
             change.own(number, pass.tables[number].grow(words, stride));
         }
+    }
+
+    /// A pass' tables, of what is planned no more: large ones are not there twice.
+    pub fn into_tables(self) -> Vec<Table> {
+        let Planned { store, borders, .. } = self;
+        let packed = store.into_packed();
+        let [rows, sets, patterns] = packed.rows.into_words();
+        vec![
+            Table::of(&packed.nodes),
+            Table::of_words(packed.points, 2),
+            Table::of_words(rows, 2),
+            Table::of_words(sets, 1),
+            Table::of_words(patterns, 1),
+            Table::of(&borders.uses),
+            Table::of(&borders.ends),
+            Table::of(&borders.records),
+        ]
     }
 }

@@ -15,14 +15,13 @@ use crate::method::patches::Part;
 use crate::method::quadtree::agreement::{agree, agreed_edges};
 use crate::method::quadtree::border::Given;
 use crate::method::quadtree::bounded;
-use crate::method::quadtree::configurations::Configurations;
 use crate::method::quadtree::irregular::{Irregulars, NONE, Record, order, push_ring};
 use crate::method::quadtree::places;
 use crate::method::quadtree::planned::Planned;
+use crate::method::quadtree::run::Run;
 use crate::method::quadtree::surroundings::{Found, Surroundings, found};
 use crate::method::{Pass, PassChange};
-use crate::plan::database::Kind;
-use crate::plan::{Database, PlanOptions, Ring, SmoothQuads};
+use crate::plan::{Database, PlanOptions, SmoothQuads};
 
 /// The passes, in their order: regular patches, patches with plans and short rings, patches with plans and long rings.
 pub const PASSES: usize = 3;
@@ -58,6 +57,8 @@ pub struct Planner {
     free: [FxHashMap<u32, Vec<u32>>; PASSES],
     /// Whether passes have vacant slots to spare.
     spares: bool,
+    /// Whether plans and borders are kept for edits.
+    keeps: bool,
 }
 
 /// What is to be planned.
@@ -68,15 +69,6 @@ pub struct Wanted<'a> {
     pub parts: &'a [Part],
     /// The ptex faces that are not drawn any more.
     pub gone: &'a [u32],
-}
-
-/// Patches on their way to a pass, and the different configurations that they have.
-#[derive(Default)]
-struct Run {
-    slots: Vec<u32>,
-    configurations: Configurations,
-    /// Those of smooth rings, by their keys.
-    smooth: FxHashMap<u32, u32>,
 }
 
 /// What can be taken back, and what is let go at the end.
@@ -138,7 +130,8 @@ const VACANT: abi::Patch = abi::Patch {
 };
 
 impl Planner {
-    pub fn new(options: PlanOptions) -> Planner {
+    /// One that keeps what edits need, or that gives it all to the passes in the end.
+    pub fn new(options: PlanOptions, keeps: bool) -> Planner {
         Planner {
             options,
             planned: Default::default(),
@@ -148,6 +141,7 @@ impl Planner {
             vacant: Default::default(),
             free: Default::default(),
             spares: false,
+            keeps,
         }
     }
 
@@ -455,45 +449,23 @@ impl Planner {
         self.vacant[number].extend((first as u32..end as u32).rev());
     }
 
-    /// Brings the passes' tables up to their plans and borders.
+    /// Brings the passes up to their plans and borders; tables only where there will be edits.
     fn finish(&mut self, passes: &mut [Pass]) -> Vec<PassChange> {
         let mut changes = vec![PassChange::default(); passes.len()];
         for (number, planned) in self.planned.iter_mut().enumerate() {
-            let change = &mut changes[SHORT + number];
-            planned.finish(&mut passes[SHORT + number], change);
+            let number = SHORT + number;
+            planned.count(&mut passes[number]);
+            if self.keeps {
+                planned.grow(&mut passes[number], &mut changes[number]);
+            }
         }
         changes
     }
-}
 
-impl Run {
-    /// What a patch is; its plan is the number of its configuration in the run.
-    fn record(&mut self, topology: &Topology, part: Part, surroundings: Surroundings) -> Record {
-        let mut number = |configuration| self.configurations.number(Kind::Inside, configuration);
-        match surroundings {
-            Surroundings::Regular(_) => unreachable!("it needs no plan"),
-            Surroundings::Smooth(start, ring) => {
-                let plan = self.smooth.entry(start.key).or_insert_with(|| {
-                    let ring = Ring::of_quad(topology, part.face);
-                    number(ring.expect("a smooth face is a quad").configuration)
-                });
-                Record {
-                    part,
-                    plan: *plan,
-                    ring_size: ring.vertices().len() as u32,
-                    start: start.corner as u8,
-                    mirrored: start.mirrored,
-                    is_smooth: true,
-                }
-            }
-            Surroundings::Irregular(ring) => Record {
-                part,
-                plan: number(ring.configuration),
-                ring_size: ring.vertices.len() as u32,
-                start: ring.start as u8,
-                mirrored: ring.mirrored,
-                is_smooth: false,
-            },
+    /// Gives the passes their tables, where nothing will be edited.
+    pub fn give(self, passes: &mut [Pass]) {
+        for (pass, planned) in passes[SHORT..].iter_mut().zip(self.planned) {
+            pass.tables = planned.into_tables();
         }
     }
 }

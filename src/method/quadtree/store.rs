@@ -31,6 +31,11 @@ impl Store {
         &self.entries[number as usize]
     }
 
+    /// The plans as shaders read them, without what they were packed from.
+    pub fn into_packed(self) -> PackedPlans {
+        self.packed
+    }
+
     /// Every plan.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().map(|entry| &**entry)

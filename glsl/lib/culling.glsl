@@ -72,7 +72,8 @@ bool is_small(Patch record, uint hull, uint seen) {
             vec3 point = hull_point(record, i);
             float at = before(row, point);
             float w = before(depth, point);
-            before_eye = before_eye && w - away > 1e-3 * abs(w);
+            // What is no number is nowhere.
+            before_eye = before_eye && w - away > 1e-3 * abs(w) && abs(at) < 3.4e38 && abs(w) < 3.4e38;
             low = min(low, (at - reach) / (at < reach ? w - away : w + away));
             high = max(high, (at + reach) / (at > -reach ? w - away : w + away));
         }

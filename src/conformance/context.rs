@@ -177,7 +177,7 @@ impl Context {
         let extra = ExtraFeatures {
             robust_buffer_access: false,
             vulkan_memory_model: false,
-            ..self.device()?.info().support.extra
+            ..self.device()?.possible()?
         };
         opened(&self.full_device, || self.open(extra))
     }

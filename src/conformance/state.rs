@@ -228,7 +228,7 @@ fn draw(context: &Context, way: Way, states: &[State], which: &[usize]) -> Resul
 }
 
 fn switches(context: &Context, way: Way, states: &[State]) -> Result<Finding> {
-    if !(way.has)(&context.device()?.info().support.extra) {
+    if !(way.has)(&context.device()?.possible()?) {
         return Ok(Finding::skip(format!(
             "the device has nothing for {}",
             way.name

@@ -93,8 +93,7 @@ struct Bed<'a> {
 
 /// A device without the memory model cannot run forms that speak it.
 fn lacks(context: &Context, form: Form) -> Result<Option<Finding>> {
-    let support = context.device()?.info().support;
-    let lacks = form.needs_model() && !support.extra.vulkan_memory_model;
+    let lacks = form.needs_model() && !context.device()?.possible()?.vulkan_memory_model;
     Ok(lacks.then(|| Finding::skip("the device has no vulkanMemoryModelDeviceScope")))
 }
 

@@ -81,7 +81,8 @@ pub(super) fn is_small(points: &[Vec3], seen: &Seen, size: [f32; 2], rows: f32) 
             let at = row.dot(point.extend(1.0));
             let w = depth.dot(point.extend(1.0));
             let [near, far] = [w - away, w + away];
-            if near <= 1e-3 * w.abs() {
+            // What is no number is nowhere.
+            if near <= 1e-3 * w.abs() || !at.is_finite() || !w.is_finite() {
                 return false;
             }
             low = low.min((at - reach) / if at < reach { near } else { far });
@@ -262,9 +263,10 @@ mod tests {
 
     #[test]
     fn between_samples_is_what_reaches_no_row_or_no_column() {
+        // Some pixels high.
         let at = |low: f32, high: f32| {
-            let at = |x: f32| Vec3::new((x - 100.0) / 100.0, 0.001, 0.0);
-            [at(low), at(high)]
+            let at = |x: f32, y: f32| Vec3::new((x - 100.0) / 100.0, y, 0.0);
+            [at(low, -0.02), at(high, 0.02)]
         };
         let small = |low, high, rows| is_small(&at(low, high), &seen(), [200.0; 2], rows);
         assert!(small(10.6, 11.4, 1.0));

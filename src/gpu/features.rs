@@ -100,8 +100,6 @@ pub struct Support {
     pub max_storage_buffer_range: u32,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
-    /// What can be asked for beyond that.
-    pub extra: ExtraFeatures,
     /// `maintenance4` comes from an extension that has to be named, as the device is below Vulkan 1.3.
     pub maintenance4_by_extension: bool,
 }
@@ -280,8 +278,6 @@ impl Support {
             dynamic_rendering: rendering.dynamic_rendering != 0,
             maintenance4: maintenance4.maintenance4 != 0,
         };
-        // SAFETY: the caller's.
-        self.extra = unsafe { ExtraFeatures::query(instance, physical, self.api_version) };
         self.maintenance4_by_extension = by_extension && self.optional.maintenance4;
     }
 }

@@ -147,6 +147,16 @@ impl Device {
         enabled.expect("only a device that lacks nothing is opened, with this chain")
     }
 
+    /// What it could have been opened with beyond that, see [`Device::open_with`].
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    pub fn possible(&self) -> Result<ExtraFeatures> {
+        let (instance, info) = (self.instance().raw(), self.info());
+        // SAFETY: the device was listed by this live instance, which was made for Vulkan 1.3.
+        unsafe { ExtraFeatures::query(instance, info.physical, info.support.api_version) }
+    }
+
     /// What it was opened with beyond that.
     pub fn extra(&self) -> ExtraFeatures {
         self.0.extra

@@ -92,7 +92,7 @@ fn seen(context: &Context, modes: Modes, table: &[TessLevels]) -> Result<Vec<(u3
 }
 
 fn lacks(context: &Context) -> Result<Option<Finding>> {
-    let has = context.device()?.info().support.extra.transform_feedback;
+    let has = context.device()?.possible()?.transform_feedback;
     Ok((!has).then(|| Finding::skip("the device has no transformFeedback")))
 }
 

@@ -56,12 +56,7 @@ fn compare(check: &mut Check, whole: &[u32], found: &[u32], cut: f32, what: impl
 }
 
 fn lacks(context: &Context) -> Result<Option<Finding>> {
-    let has = context
-        .device()?
-        .info()
-        .support
-        .extra
-        .clip_and_cull_distances;
+    let has = context.device()?.possible()?.clip_and_cull_distances;
     Ok((!has)
         .then(|| Finding::skip("the device has no shaderClipDistance, or no shaderCullDistance")))
 }

@@ -4,6 +4,8 @@ use std::ffi::CStr;
 
 use ash::{ext, khr, vk};
 
+use crate::error::Result;
+use crate::gpu::failed;
 use crate::gpu::features::extension::has_extension;
 
 /// Features that are there on request: our own shaders use none of them, the conformance suite does.
@@ -47,24 +49,30 @@ impl ExtraFeatures {
         named
     }
 
-    /// Which of them a device has.
+    /// Which of them a device of this version has.
+    ///
+    /// # Errors
+    /// What `vkEnumerateDeviceExtensionProperties` returns.
     ///
     /// # Safety
-    /// `physical` belongs to the live `instance`, and has this version.
-    pub(super) unsafe fn query(
+    /// `physical` belongs to the live `instance`, which was created for Vulkan 1.2 or later.
+    pub unsafe fn query(
         instance: &ash::Instance,
         physical: vk::PhysicalDevice,
         api_version: u32,
-    ) -> ExtraFeatures {
-        // SAFETY: the caller's. A device that fails to answer goes without.
-        let has = |name| unsafe { has_extension(instance, physical, name) } == Ok(true);
+    ) -> Result<ExtraFeatures> {
+        let has = |name| {
+            // SAFETY: the caller's.
+            let found = unsafe { has_extension(instance, physical, name) };
+            found.map_err(failed("vkEnumerateDeviceExtensionProperties"))
+        };
         let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
+        let libraries =
+            has(khr::pipeline_library::NAME)? && has(ext::graphics_pipeline_library::NAME)?;
         let mut chain = ExtraChain {
-            feedback: has(ext::transform_feedback::NAME).then(Default::default),
-            dynamic_state: has(ext::extended_dynamic_state2::NAME).then(Default::default),
-            libraries: (has(khr::pipeline_library::NAME)
-                && has(ext::graphics_pipeline_library::NAME))
-            .then(Default::default),
+            feedback: has(ext::transform_feedback::NAME)?.then(Default::default),
+            dynamic_state: has(ext::extended_dynamic_state2::NAME)?.then(Default::default),
+            libraries: libraries.then(Default::default),
         };
         let mut features = vk::PhysicalDeviceFeatures2::default();
         if api_version >= vk::API_VERSION_1_2 {
@@ -82,7 +90,7 @@ impl ExtraFeatures {
         // SAFETY: the caller's; each struct in the chain is one that the device knows and outlives the call.
         unsafe { instance.get_physical_device_features2(physical, &mut features) };
         let core = features.features;
-        ExtraFeatures {
+        Ok(ExtraFeatures {
             robust_buffer_access: core.robust_buffer_access != 0,
             vulkan_memory_model: model.vulkan_memory_model != 0
                 && model.vulkan_memory_model_device_scope != 0,
@@ -100,7 +108,7 @@ impl ExtraFeatures {
             pipeline_libraries: chain
                 .libraries
                 .is_some_and(|own| own.graphics_pipeline_library != 0),
-        }
+        })
     }
 
     /// Sets those that have members in these structs; clears nothing.

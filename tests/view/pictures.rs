@@ -20,7 +20,7 @@ const LINED: [&str; 4] = ["node kinds", "levels", "tree depth", "checker"];
 /// What is pressed from one picture to the next, so that in the end each choice has met many others; one for each kind of faces.
 const WALKS: [(&str, &str); 3] = [
     ("builtin:ngons", "c mb c o bc brc lc zc ac w"),
-    ("builtin:cube", "w wmmmc bc rc lc mb c kc mb oc mb c mzc"),
+    ("builtin:cube", "w wmmmc bc rc lc mb c kc mb oc mb c mzc mc"),
     ("builtin:hull", "MM mmc bc bc oc rc c"),
 ];
 

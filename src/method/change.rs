@@ -22,7 +22,6 @@ pub struct Update {
     /// By pass, which words of its tables are other ones; nothing where all are.
     pub passes: Vec<PassChange>,
     /// The version that was edited.
-    #[cfg_attr(not(feature = "vulkan"), expect(dead_code))]
     before: u64,
 }
 

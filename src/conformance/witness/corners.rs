@@ -46,9 +46,7 @@ fn look(context: &Context, subject: &Subject<'_>, check: &mut Check) -> Result<L
     each_patch(context, &subject, LEVEL, turned_at_corners, |patch| {
         let valences = patch.pass.patches[patch.number].valences.to_le_bytes();
         for (corner, valence) in (0..patch.pass.domain.corners()).zip(valences) {
-            // Where a face is alone the tangents of patches may vanish, of which nobody says that their normals are the limit's.
-            let alone = valence == 2 && subject.method.contract.normals.is_none();
-            if valence <= MOST_EDGES && !alone {
+            if valence <= MOST_EDGES {
                 looked.add(hold_corner(check, &subject, patch, corner));
             }
         }

@@ -109,15 +109,10 @@ impl Ring {
         let (angle, half) = (self.angle(), self.angle() / 2.0);
         if self.faces() == 1 {
             // What the limit of a sharp corner has; elsewhere the boundary is one curve.
-            let spoke = |i: usize| sum(&[(1.0, &one(self.ends[i])), (-1.0, &one(self.middle))]);
             let along = sum(&[(0.5, &one(self.ends[0])), (-0.5, &one(self.ends[1]))]);
-            let sharp = self
-                .limit
-                .iter()
-                .all(|&(v, w)| v == self.middle || w == 0.0);
-            self.tangents = match sharp {
-                true => vec![spoke(0), spoke(1)],
-                false => vec![along.clone(), sum(&[(-1.0, &along)])],
+            self.tangents = match self.is_bend() {
+                false => self.spokes().to_vec(),
+                true => vec![along.clone(), sum(&[(-1.0, &along)])],
             };
             return;
         }
@@ -191,12 +186,38 @@ impl Ring {
         })
     }
 
-    /// Two tangents for the normal.
+    /// Whether the boundary is one curve around the corner of a single face, so that both tangents lie along it.
+    fn is_bend(&self) -> bool {
+        let mut others = self.limit.iter().filter(|term| term.0 != self.middle);
+        self.faces() == 1 && others.any(|&(_, weight)| weight != 0.0)
+    }
+
+    /// The edges themselves, of a single face.
+    fn spokes(&self) -> [Mask; 2] {
+        [0, 1].map(|i| sum(&[(1.0, &one(self.ends[i])), (-1.0, &one(self.middle))]))
+    }
+
+    /// Two vectors in the plane that the patches have.
+    ///
+    /// In a bend of the boundary the first derivatives T and -T span none, and the normal is the limit of that inside, along the diagonal: T x (Suu + 2 Suv + Svv).
+    /// Of a quad with the vertices v, a, c, b around v the points next to v are, in both papers, those of the boundary's B-spline, (2 v + a) / 3 and
+    /// (v + 2 a) / 3, likewise with b, and (4 v + 2 a + 2 b + c) / 9 inside. So Suu = Svv = a + b - 2 v and Suv = c + (a + b) / 2 - 2 v. Of a triangle the sum is
+    /// 3 (a + b - 2 v) but for multiples of T: its edges span the plane.
     pub fn plane(&self) -> [Mask; 2] {
         if self.faces() > 1 {
             return [self.tangents[0].clone(), self.tangents[1].clone()];
         }
-        [0, 1].map(|i| sum(&[(1.0, &one(self.ends[i])), (-1.0, &one(self.middle))]))
+        let Some(far) = self.fars[0].filter(|_| self.is_bend()) else {
+            return self.spokes();
+        };
+        let [next, previous] = self.spokes();
+        let across = sum(&[
+            (3.0, &next),
+            (3.0, &previous),
+            (2.0, &one(far)),
+            (-2.0, &one(self.middle)),
+        ]);
+        [self.tangents[0].clone(), across]
     }
 
     /// The valence that counts: a boundary is half of a vertex, and the corner of a single face is as regular as can be.

@@ -72,6 +72,8 @@ const uint USES = 9u;
 const uint PRODUCTS_A_WORD = 16u;
 // Instead of the number of a pair of tangents: there is none.
 const uint NO_TANGENTS = 4294967295u;
+// How often a patch is halved towards an extraordinary vertex before it is taken for that: tess coordinates are whole steps of 2^-16.
+const uint EIGEN_LEVELS = 17u;
 // Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
 const uint USE_FLIPPED = 1u;
 // Use flag: the patch has the first half of the edge.
@@ -384,6 +386,16 @@ struct TablePlace {
     uint face;
     // The face's own edge or corner, and `PLACE_FLIPPED`.
     uint side;
+};
+
+// The eigenbasis of a valence (Stam 1998), where its floats begin.
+struct Eigenbasis {
+    // How many eigenvectors there are: twice the valence and eight.
+    uint count;
+    // Of each of the three pieces of a patch, for each vector the sixteen control points of a B-spline.
+    uint coefficients;
+    // Of each of the `EIGEN_LEVELS`, each eigenvalue to its power.
+    uint powers;
 };
 
 // A node of a quadtree.

@@ -78,6 +78,8 @@ constants! {
     PRODUCTS_A_WORD = 16;
     /// Instead of the number of a pair of tangents: there is none.
     NO_TANGENTS = 0xffff_ffff;
+    /// How often a patch is halved towards an extraordinary vertex before it is taken for that: tess coordinates are whole steps of 2^-16.
+    EIGEN_LEVELS = 17;
     /// Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
     USE_FLIPPED = 1;
     /// Use flag: the patch has the first half of the edge.
@@ -402,6 +404,16 @@ structs! {
         face: u32,
         /// The face's own edge or corner, and `PLACE_FLIPPED`.
         side: u32,
+    }
+
+    /// The eigenbasis of a valence (Stam 1998), where its floats begin.
+    Eigenbasis {
+        /// How many eigenvectors there are: twice the valence and eight.
+        count: u32,
+        /// Of each of the three pieces of a patch, for each vector the sixteen control points of a B-spline.
+        coefficients: u32,
+        /// Of each of the `EIGEN_LEVELS`, each eigenvalue to its power.
+        powers: u32,
     }
 
     /// A node of a quadtree.

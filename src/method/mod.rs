@@ -51,6 +51,7 @@ mod bicubic;
 mod cached;
 mod cell;
 mod change;
+mod children;
 #[cfg(feature = "vulkan")]
 mod deciding;
 mod displacement;
@@ -71,7 +72,9 @@ mod ptex;
 mod qas;
 mod quads;
 mod quadtree;
+mod regular;
 mod spokes;
+mod stam;
 mod surface;
 mod table;
 mod tags;
@@ -269,6 +272,7 @@ pub const METHODS: &[Method] = &[
     bft::METHOD,
     gregory::METHOD,
     acc::METHOD,
+    stam::METHOD,
     pn::METHOD,
     phong::METHOD,
     flat::METHOD,

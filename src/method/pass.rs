@@ -119,13 +119,7 @@ impl Pass {
     /// `glsl/lib/vertex.glsl`. Zero where there is no such patch.
     pub fn texture_coordinates(&self, patch: usize, uv: [f32; 2]) -> [f32; 2] {
         let corners = self.texture.get(patch).copied().unwrap_or_default();
-        let [a, b, c, d] = corners.map(Vec2::from);
-        let [u, v] = uv;
-        match self.domain {
-            Domain::Quads => a.lerp(b, u).lerp(d.lerp(c, u), v),
-            Domain::Triangles => (1.0 - u - v) * a + u * b + v * c,
-        }
-        .to_array()
+        linear(self.domain, corners, uv)
     }
 
     /// Whether a point of a patch's domain is a corner of the finest grid that the pass has tables for; see [`Reproduces::LimitOnLattice`](crate::method::Reproduces::LimitOnLattice).
@@ -184,6 +178,17 @@ impl Pass {
         let plan = self.patches.get(patch)?.plan;
         list.get(plan as usize).filter(|_| !self.is_vacant(patch))
     }
+}
+
+/// Linear between the corners of a domain.
+pub(super) fn linear(domain: Domain, corners: [[f32; 2]; 4], uv: [f32; 2]) -> [f32; 2] {
+    let [a, b, c, d] = corners.map(Vec2::from);
+    let [u, v] = uv;
+    match domain {
+        Domain::Quads => a.lerp(b, u).lerp(d.lerp(c, u), v),
+        Domain::Triangles => (1.0 - u - v) * a + u * b + v * c,
+    }
+    .to_array()
 }
 
 /// Whether a point of a triangle is a corner or the middle of an edge; see [`Reproduces::LimitOnHexagon`](crate::method::Reproduces::LimitOnHexagon).

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
 use crate::method::surface::{CLEAR, Tangents, UNIT, reach};
 use crate::method::unit::{factor_for, greatest_exponent, sized, unit};
-use crate::subdivision::Mask;
+use crate::subdivision::{Blend, Mask};
 
 /// How points are computed, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,6 +93,14 @@ impl Points {
         self.count = self.count.max(step.first_point + step.count);
     }
 
+    /// A step of positions from control vertices.
+    pub(super) fn blend(&mut self, first_point: u32, masks: &[Mask]) {
+        self.begin(abi::POINTS_BLEND, first_point);
+        for mask in masks {
+            self.push(Row::Blend(&ascending(mask)));
+        }
+    }
+
     /// The points of control vertices, of which none that is named lacks.
     pub(crate) fn compute(&self, vertices: &[Vec3]) -> Vec<Point> {
         let mut points = vec![Point::default(); self.count as usize];
@@ -160,6 +168,14 @@ impl Points {
             ..before
         }
     }
+}
+
+/// The mask with each vertex once, and the greatest weight last: sums of hundreds of terms, at vertices of high valence, keep their last places
+/// so.
+pub(super) fn ascending(mask: &Mask) -> Mask {
+    let mut merged = Mask::blend(&[(0, 1.0)], std::slice::from_ref(mask));
+    merged.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    merged
 }
 
 /// The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 use crate::conformance::random::Random;
 use crate::error::Result;
 use crate::mesh::{
-    ControlMesh, ControlMeshBuilder, Model, Scheme, SchemeOptions, Triangulation, builtin,
-    triangulated,
+    BoundaryInterpolation, ControlMesh, ControlMeshBuilder, Model, Scheme, SchemeOptions,
+    Triangulation, builtin, triangulated,
 };
 use crate::method::Method;
 
@@ -37,6 +37,19 @@ impl Parts {
         let sizes: Vec<u32> = self.faces.iter().map(|face| face.len() as u32).collect();
         let builder = ControlMesh::builder(&self.positions, &sizes, &self.faces.concat());
         tag(builder).build()
+    }
+
+    /// The mesh under a scheme without tags; for those who are not able to draw boundaries, with holes for the faces there.
+    pub fn open(&self, scheme: Scheme, able: impl Fn(&ControlMesh) -> bool) -> Result<ControlMesh> {
+        let whole = under(self.build()?, scheme)?;
+        if able(&whole) {
+            return Ok(whole);
+        }
+        let options = SchemeOptions {
+            boundary: BoundaryInterpolation::None,
+            ..SchemeOptions::default()
+        };
+        under(self.tagged(|builder| builder.options(options))?, scheme)
     }
 
     /// Moves every vertex by up to `by`, the same way for the same seed: nothing is where symmetry would hide a mistake.

@@ -40,12 +40,12 @@ pub fn planar(
             }
         }
     }
-    let mut flat = sheet(3);
+    let mut flat = sheet(5);
     for position in &mut flat.positions {
         position[2] = 0.0;
     }
     let (parts, normal) = placed(flat, random);
-    let mesh = under(parts.build()?, scheme)?;
+    let mesh = parts.open(scheme, able)?;
     Ok(Planar { mesh, normal })
 }
 

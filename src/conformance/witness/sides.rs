@@ -8,11 +8,11 @@ use super::drawn::{degrees, diagonal, each_patch, normal, position};
 use super::{Looked, Rule, Subject};
 use crate::abi::Captured;
 use crate::conformance::capture::{capturing, cut};
-use crate::conformance::meshes::{Parts, sheet, under};
+use crate::conformance::meshes::{Parts, sheet};
 use crate::conformance::{Case, Check, Context, Finding};
 use crate::error::Result;
 use crate::gpu::{Backend, SurfaceOptions, shaders};
-use crate::mesh::{Model, Scheme};
+use crate::mesh::{ControlMesh, Model, Scheme};
 use crate::method::{METHODS, Method, MethodOptions};
 use crate::tessellation::{Spacing, triangulate};
 
@@ -106,7 +106,7 @@ fn winding(
     if backend == Backend::Geometry && !has {
         return Ok(Finding::skip("the device has no geometry shaders"));
     }
-    let mut parts = sheet(3);
+    let mut parts = sheet(5);
     for position in &mut parts.positions {
         position[2] = 0.0;
     }
@@ -130,7 +130,8 @@ fn seen(
     backend: Backend,
     parts: &Parts,
 ) -> Result<usize> {
-    let model = Model::new(under(parts.build()?, scheme)?);
+    let able = |mesh: &ControlMesh| method.check_model(&Model::new(mesh.clone())).is_ok();
+    let model = Model::new(parts.open(scheme, able)?);
     let prepared = method.prepare(&model, MethodOptions::default())?;
     let cut = cut(4.0, Spacing::Equal);
     let options = SurfaceOptions {

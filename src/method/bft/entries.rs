@@ -5,7 +5,7 @@
 use crate::abi;
 use crate::mesh::topology::Topology;
 use crate::method::TableNormals;
-use crate::method::points::{Points, Row};
+use crate::method::points::{Points, Row, ascending};
 use crate::method::vertices::push_ring;
 use crate::subdivision::{Blend, Mask, Refinement};
 
@@ -17,18 +17,14 @@ pub fn points(
     normals: TableNormals,
 ) -> Points {
     let mut points = Points::default();
-    blend(&mut points, 0, &once.masks);
+    points.blend(0, &once.masks);
     let others = once.masks.len() as u32;
     match (normals, twice) {
         (TableNormals::Geometric, _) => {}
         (TableNormals::Shading(0), _) => {
             let itself = |vertex| Mask::from_slice(&[(vertex, 1.0)]);
             let vertices = 0..control.vertex_count() as u32;
-            blend(
-                &mut points,
-                others,
-                &vertices.map(itself).collect::<Vec<_>>(),
-            );
+            points.blend(others, &vertices.map(itself).collect::<Vec<_>>());
             rings(&mut points, others, control);
             // The first step of Alexa and Boubekeur 2008, section 3: the masks of positions, then unit length.
             points.begin(abi::POINTS_NORMALS, 0);
@@ -41,20 +37,12 @@ pub fn points(
         (_, Some(twice)) => {
             let masks = twice.masks.iter();
             let masks = masks.map(|mask| Mask::blend(mask, &once.masks));
-            blend(&mut points, others, &masks.collect::<Vec<_>>());
+            points.blend(others, &masks.collect::<Vec<_>>());
             rings(&mut points, others, &twice.topology);
         }
         (_, None) => rings(&mut points, 0, &once.topology),
     }
     points
-}
-
-/// Positions from control vertices.
-fn blend(points: &mut Points, first: u32, masks: &[Mask]) {
-    points.begin(abi::POINTS_BLEND, first);
-    for mask in masks {
-        points.push(Row::Blend(&ascending(mask)));
-    }
 }
 
 /// Normals of the rings around all vertices of a mesh, whose vertex 0 is a point.
@@ -63,12 +51,4 @@ fn rings(points: &mut Points, first: u32, topology: &Topology) {
     for vertex in 0..topology.vertex_count() as u32 {
         push_ring(points, topology, vertex, first);
     }
-}
-
-/// The mask with each vertex once, and the greatest weight last: sums of hundreds of terms, at vertices of high valence, keep their last places
-/// so.
-fn ascending(mask: &Mask) -> Mask {
-    let mut merged = Mask::blend(&[(0, 1.0)], std::slice::from_ref(mask));
-    merged.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    merged
 }

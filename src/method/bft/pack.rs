@@ -6,8 +6,8 @@ use crate::abi::{self, TableFace, TablePlace};
 use crate::mesh::Model;
 use crate::method::bft::lattice::Lattice;
 use crate::method::bft::{Normals, Tables, domain, twin};
-use crate::method::patches::{self, Part};
-use crate::method::{Pass, Table, to_ptex};
+use crate::method::children::{Child, children};
+use crate::method::{Pass, Table};
 use crate::tessellation::Domain;
 
 /// The passes of quads and of triangles, which may be empty.
@@ -36,43 +36,6 @@ pub fn passes(model: &Model, tables: &Tables) -> [Pass; 2] {
         }
         packer.finish(&places)
     })
-}
-
-/// A face of the refined mesh: the part of the control mesh that it belongs to, and which child of it it is.
-struct Child {
-    part: Part,
-    face: u32,
-    child: u32,
-}
-
-/// The faces that are drawn, in the order of ptex faces. The children of a whole face are its quarters, that at the corner of an n-gon is a part itself.
-fn children(model: &Model) -> Vec<Child> {
-    let topology = model.topology();
-    let scheme = model.mesh().options().scheme;
-    let mut first = 0;
-    let firsts: Vec<u32> = (0..topology.face_count() as u32)
-        .map(|face| {
-            let arity = topology.face(face).len();
-            let count = if scheme.is_whole(arity) { 4 } else { arity };
-            let own = first;
-            first += count as u32;
-            own
-        })
-        .collect();
-    let parts = patches::parts(model).into_iter().flat_map(|part| {
-        let whole = scheme.is_whole(topology.face(part.face).len());
-        let first_child = match part.domain {
-            Domain::Quads => abi::CHILD_OF_QUAD,
-            Domain::Triangles => abi::CHILD_OF_TRIANGLE,
-        };
-        let first = firsts[part.face as usize];
-        (0..if whole { 4 } else { 1 }).map(move |number| Child {
-            part,
-            face: first + if whole { number } else { part.corner },
-            child: if whole { first_child + number } else { 0 },
-        })
-    });
-    parts.collect()
 }
 
 /// The first face that is drawn on each edge and at each vertex of the refined mesh, with its own side or corner there.
@@ -116,26 +79,14 @@ struct Packer<'a> {
 
 impl Packer<'_> {
     fn add(&mut self, model: &Model, child: &Child) {
-        let topology = &self.tables.topology;
-        let vertices = topology.face(child.face);
         let turn = self.turn(child.face);
         let plan = self.number(child.face);
-        let valence = |i: usize| {
-            let corner = (i + turn as usize) % vertices.len();
-            let edges = topology.vertex_edges(vertices[corner]).len();
-            edges.min(255) as u8 * u8::from(i < vertices.len())
-        };
         let patch = abi::Patch {
-            ptex: child.part.ptex,
-            flags: abi::PATCH_HALF
-                | abi::PATCH_REFINED
-                | turn << abi::PATCH_TURN_SHIFT
-                | child.child << abi::PATCH_CHILD_SHIFT,
             controls: self.faces[plan as usize].controls,
             plan,
-            valences: u32::from_le_bytes([0, 1, 2, 3].map(valence)),
+            ..child.patch(&self.tables.topology, turn)
         };
-        self.pass.texture.push(texture(model, child.part, &patch));
+        self.pass.texture.push(child.texture(model, &patch));
         self.pass.patches.push(patch);
     }
 
@@ -250,15 +201,4 @@ impl Packer<'_> {
         ];
         self.pass
     }
-}
-
-/// The texture coordinates at the corners of a patch, linear in the part that it belongs to; a triangle's last one twice.
-fn texture(model: &Model, part: Part, patch: &abi::Patch) -> [[f32; 2]; 4] {
-    let mut whole = Pass::new("bft", part.domain, 1, twin);
-    whole.texture.push(patches::texture(model, part, 0));
-    let corners = match part.domain {
-        Domain::Quads => [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-        Domain::Triangles => [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]],
-    };
-    corners.map(|corner| whole.texture_coordinates(0, to_ptex(patch, corner)))
 }

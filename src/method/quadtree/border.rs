@@ -17,9 +17,10 @@ use crate::mesh::topology::Topology;
 use crate::method::patches::Part;
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
-use crate::method::quadtree::plain::{edge_rows, is_plain, is_turned_corner, vertex_rows};
+use crate::method::quadtree::plain::{edge_rows, is_plain, vertex_rows};
 use crate::method::quadtree::store::Store;
 use crate::method::quadtree::subjects::{Known, LONG, Line, LongRings, Point, Shared, Subject};
+use crate::method::regular::is_turned_corner;
 use crate::plan::{Database, PlanOptions, Ring, Side, SmoothQuads};
 
 /// The levels that a patch can be drawn at.

@@ -1,32 +1,11 @@
 //! Plain edges and vertices: smooth, with four quads around each vertex. They need no plans; B-splines whose sums are symmetric give the same
 //! bits to all faces around them.
 
-use crate::mesh::topology::Topology;
 use crate::plan::SmoothQuads;
 
 /// Whether a vertex is plain.
 pub fn is_plain(smooth: &SmoothQuads<'_>, vertex: u32) -> bool {
     smooth.valence(vertex) == Some(4)
-}
-
-/// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
-/// vertex's edges that have the lowest number.
-pub fn is_turned_corner(
-    topology: &Topology,
-    smooth: &SmoothQuads<'_>,
-    face: u32,
-    corner: u32,
-) -> bool {
-    let vertex = topology.face(face)[corner as usize];
-    let edges = topology.face_edges(face);
-    let [leaving, entering] = [corner, corner + 3].map(|i| edges[i as usize % 4]);
-    let lowest = topology.vertex_edges(vertex)[0];
-    if lowest == leaving || lowest == entering {
-        return lowest == entering;
-    }
-    // Beyond the edge that enters lies a face with the one that goes on from the edge that leaves.
-    let beyond = smooth.around(4 * face + corner) / 4;
-    !topology.face_edges(beyond).contains(&lowest)
 }
 
 /// The nine vertices around a plain vertex, row by row, in the frame of a corner: u runs to the next vertex and v to the previous one.

@@ -4,7 +4,7 @@ use crate::abi;
 use crate::mesh::Model;
 use crate::mesh::topology::Topology;
 use crate::method::patches::{self, Part};
-use crate::method::quadtree::plain::is_turned_corner;
+use crate::method::regular::turned_corners;
 use crate::plan::{Ring, SmoothQuads, SmoothRing, SmoothStart};
 
 /// A part on its way to a patch.
@@ -33,7 +33,7 @@ pub fn found(model: &Model, smooth: &SmoothQuads<'_>, part: Part) -> Found {
     };
     let mut patch = patches::patch(model, part, turn);
     patch.flags |= match &surroundings {
-        Surroundings::Regular(_) => turned_corners(topology, smooth, part.face),
+        Surroundings::Regular(_) => turned_corners(topology, smooth, part.face, 0),
         Surroundings::Smooth(start, ring) => ring_flags(ring.vertices(), start.mirrored),
         Surroundings::Irregular(ring) => ring_flags(&ring.vertices, ring.mirrored),
     };
@@ -64,14 +64,4 @@ fn surroundings(topology: &Topology, smooth: &SmoothQuads<'_>, part: Part) -> Su
         _ => Ring::of_part(topology, face, part.corner),
     };
     Surroundings::Irregular(ring.expect("parts are the topology's own").into())
-}
-
-/// The flags of a regular patch's corners at which sums go along v first.
-fn turned_corners(topology: &Topology, smooth: &SmoothQuads<'_>, face: u32) -> u32 {
-    let turned =
-        |&corner: &u32| is_turned_corner(topology, smooth, face, corner) != (corner % 2 == 1);
-    let corners = (0..4).filter(turned);
-    corners
-        .map(|corner| abi::PATCH_TURNED_CORNER << corner)
-        .sum()
 }

@@ -9,108 +9,21 @@ use crate::abi;
 use crate::method::quadtree::NODE_KINDS;
 use crate::method::quadtree::places::place_at;
 use crate::method::quadtree::view::{self, Border};
+use crate::method::regular::{Place, bspline, exchanged, place, regular_surface};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::{Cell, Pass};
-use crate::patch::bspline::{Basis, basis, basis_of};
+use crate::patch::bspline::{Basis, basis};
 use crate::patch::crease::crease_basis;
 use crate::plan::{Leaf, Plans, Row, RowsView, walk};
 
-/// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
-    Inside,
-    /// On an edge: where along it, counter-clockwise, and what is left of it.
-    Edge(u32, [f32; 2]),
-    Corner(u32),
-}
-
-fn place(flags: u32, uv: Vec2) -> Place {
-    let (low, high) = (uv.cmple(Vec2::ZERO), uv.cmpge(Vec2::ONE));
-    let corner = match (high.x, high.y) {
-        (false, false) => 0,
-        (true, false) => 1,
-        (true, true) => 2,
-        (false, true) => 3,
-    };
-    // Corners 1 and 3 of an n-gon's part are the middles of edges.
-    let middle = flags & abi::PATCH_HALF != 0 && corner % 2 == 1;
-    if (low.x || high.x) && (low.y || high.y) && !middle {
-        return Place::Corner(corner);
-    }
-    let (edge, along, backwards) = match () {
-        () if low.y => (0, uv.x, false),
-        () if low.x => (3, uv.y, true),
-        () if high.x => (1, uv.y, false),
-        () if high.y => (2, uv.x, true),
-        () => return Place::Inside,
-    };
-    Place::Edge(edge, turned_round(along, backwards))
-}
-
-/// t and 1 - t, exchanged if `backwards`. The smaller of both is exact: so both directions have the same pair.
-fn turned_round(t: f32, backwards: bool) -> [f32; 2] {
-    let small = if t > 0.5 { 1.0 - t } else { t };
-    let pair = [small, 1.0 - small];
-    if (t > 0.5) != backwards {
-        [pair[1], pair[0]]
-    } else {
-        pair
-    }
-}
-
-/// Sum of four weighted points, the same bits from either end: on edges and at corners one of the outer weights is zero, and the others
-/// are symmetric about the second or third point. Twin of `blend` in `glsl/lib/bspline.glsl`.
-fn blend(w: [f32; 4], p: [Vec3; 4]) -> Vec3 {
-    (w[0] * p[0] + w[2] * p[2]) + (w[1] * p[1] + w[3] * p[3])
-}
-
-/// The products of two bases, with control points from `point`; rows along u first.
-fn bspline(
-    u: Basis<f32>,
-    v: Basis<f32>,
-    scale: f32,
-    point: impl Fn(usize, usize) -> Vec3,
-) -> Surface {
-    let rows = [0, 1, 2, 3].map(|y| [0, 1, 2, 3].map(|x| point(x, y)));
-    let values = rows.map(|row| blend(u.value, row));
-    let derivatives = rows.map(|row| blend(u.derivative, row));
-    Surface {
-        position: blend(v.value, values),
-        du: scale * blend(v.value, derivatives),
-        dv: scale * blend(v.derivative, values),
-    }
-}
-
-/// A plain B-spline patch. On edges the sums go along the edge first, at corners along the direction that the vertex prefers.
+/// A plain B-spline patch.
 pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let abi::Patch {
         controls, flags, ..
     } = pass.patches[patch];
     let controls = &pass.controls[controls as usize..];
     let point = |x: usize, y: usize| given.vertices[controls[x + 4 * y] as usize];
-    let place = place(flags, uv);
-    let turned = match place {
-        Place::Inside => false,
-        Place::Edge(edge, _) => edge % 2 == 1,
-        Place::Corner(corner) => flags & (abi::PATCH_TURNED_CORNER << corner) != 0,
-    };
-    let [u, v] = [uv.x, uv.y].map(|t| {
-        let [t, s] = turned_round(t, false);
-        basis_of(t, s)
-    });
-    if !turned {
-        return bspline(u, v, 1.0, point).point();
-    }
-    exchanged(bspline(v, u, 1.0, |x, y| point(y, x))).point()
-}
-
-/// Seen with u and v exchanged.
-fn exchanged(Surface { position, du, dv }: Surface) -> Surface {
-    Surface {
-        position,
-        du: dv,
-        dv: du,
-    }
+    regular_surface(flags, uv, point).point()
 }
 
 /// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first

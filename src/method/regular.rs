@@ -1,0 +1,137 @@
+//! Faces that are one bicubic B-spline, and what they share with the patches around: on edges and at corners their sums run in an order that all faces
+//! there have, and so give the same bits. Twin of `glsl/lib/regular.glsl`, `glsl/lib/border.glsl` and `glsl/lib/bspline.glsl`.
+
+use glam::{Vec2, Vec3};
+
+use crate::abi;
+use crate::mesh::topology::Topology;
+use crate::method::surface::Surface;
+use crate::patch::bspline::{Basis, basis_of};
+use crate::plan::SmoothQuads;
+
+/// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    Inside,
+    /// On an edge: where along it, counter-clockwise, and what is left of it.
+    Edge(u32, [f32; 2]),
+    Corner(u32),
+}
+
+pub fn place(flags: u32, uv: Vec2) -> Place {
+    let (low, high) = (uv.cmple(Vec2::ZERO), uv.cmpge(Vec2::ONE));
+    let corner = match (high.x, high.y) {
+        (false, false) => 0,
+        (true, false) => 1,
+        (true, true) => 2,
+        (false, true) => 3,
+    };
+    // Corners 1 and 3 of an n-gon's part are the middles of edges.
+    let middle = flags & abi::PATCH_HALF != 0 && corner % 2 == 1;
+    if (low.x || high.x) && (low.y || high.y) && !middle {
+        return Place::Corner(corner);
+    }
+    let (edge, along, backwards) = match () {
+        () if low.y => (0, uv.x, false),
+        () if low.x => (3, uv.y, true),
+        () if high.x => (1, uv.y, false),
+        () if high.y => (2, uv.x, true),
+        () => return Place::Inside,
+    };
+    Place::Edge(edge, turned_round(along, backwards))
+}
+
+/// t and 1 - t, exchanged if `backwards`. The smaller of both is exact: so both directions have the same pair.
+pub fn turned_round(t: f32, backwards: bool) -> [f32; 2] {
+    let small = if t > 0.5 { 1.0 - t } else { t };
+    let pair = [small, 1.0 - small];
+    if (t > 0.5) != backwards {
+        [pair[1], pair[0]]
+    } else {
+        pair
+    }
+}
+
+/// Sum of four weighted points, the same bits from either end: on edges and at corners one of the outer weights is zero, and the others
+/// are symmetric about the second or third point. Twin of `blend` in `glsl/lib/bspline.glsl`.
+fn blend(w: [f32; 4], p: [Vec3; 4]) -> Vec3 {
+    (w[0] * p[0] + w[2] * p[2]) + (w[1] * p[1] + w[3] * p[3])
+}
+
+/// The products of two bases, with control points from `point`; rows along u first.
+pub fn bspline(
+    u: Basis<f32>,
+    v: Basis<f32>,
+    scale: f32,
+    point: impl Fn(usize, usize) -> Vec3,
+) -> Surface {
+    let rows = [0, 1, 2, 3].map(|y| [0, 1, 2, 3].map(|x| point(x, y)));
+    let values = rows.map(|row| blend(u.value, row));
+    let derivatives = rows.map(|row| blend(u.derivative, row));
+    Surface {
+        position: blend(v.value, values),
+        du: scale * blend(v.value, derivatives),
+        dv: scale * blend(v.derivative, values),
+    }
+}
+
+/// A plain B-spline patch, with vertices at all its corners. On edges the sums go along the edge first, at corners along the direction that the vertex prefers.
+/// Twin of `regular_surface` in `glsl/lib/regular.glsl`.
+pub fn regular_surface(flags: u32, uv: Vec2, point: impl Fn(usize, usize) -> Vec3) -> Surface {
+    let turned = match place(flags & !abi::PATCH_HALF, uv) {
+        Place::Inside => false,
+        Place::Edge(edge, _) => edge % 2 == 1,
+        Place::Corner(corner) => flags & (abi::PATCH_TURNED_CORNER << corner) != 0,
+    };
+    let [u, v] = [uv.x, uv.y].map(|t| {
+        let [t, s] = turned_round(t, false);
+        basis_of(t, s)
+    });
+    if !turned {
+        return bspline(u, v, 1.0, point);
+    }
+    exchanged(bspline(v, u, 1.0, |x, y| point(y, x)))
+}
+
+/// Seen with u and v exchanged.
+pub fn exchanged(Surface { position, du, dv }: Surface) -> Surface {
+    Surface {
+        position,
+        du: dv,
+        dv: du,
+    }
+}
+
+/// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
+/// vertex's edges that have the lowest number.
+pub fn is_turned_corner(
+    topology: &Topology,
+    smooth: &SmoothQuads<'_>,
+    face: u32,
+    corner: u32,
+) -> bool {
+    let vertex = topology.face(face)[corner as usize];
+    let edges = topology.face_edges(face);
+    let [leaving, entering] = [corner, corner + 3].map(|i| edges[i as usize % 4]);
+    let lowest = topology.vertex_edges(vertex)[0];
+    if lowest == leaving || lowest == entering {
+        return lowest == entering;
+    }
+    // Beyond the edge that enters lies a face with the one that goes on from the edge that leaves.
+    let beyond = smooth.around(4 * face + corner) / 4;
+    !topology.face_edges(beyond).contains(&lowest)
+}
+
+/// The flags of those plain corners of a patch at which sums go along v first. Corner 0 of the patch is the face's corner `turn`.
+pub fn turned_corners(topology: &Topology, smooth: &SmoothQuads<'_>, face: u32, turn: u32) -> u32 {
+    let vertices = topology.face(face);
+    let is_turned = |&corner: &u32| {
+        let own = (turn + corner) % 4;
+        smooth.valence(vertices[own as usize]) == Some(4)
+            && is_turned_corner(topology, smooth, face, own) != (corner % 2 == 1)
+    };
+    let turned = (0..4).filter(is_turned);
+    turned
+        .map(|corner| abi::PATCH_TURNED_CORNER << corner)
+        .sum()
+}

@@ -1,0 +1,341 @@
+//! `stam`: direct evaluation of Catmull and Clark's limit (Stam 1998, "Exact evaluation of Catmull-Clark subdivision surfaces at arbitrary parameter values").
+//!
+//! Far down towards an extraordinary vertex the limit is the same B-splines, of control vertices that one matrix was applied to again and again. In the
+//! basis of its eigenvectors that is a power of each eigenvalue (`stam/eigenbasis.rs`): so any place costs one sum over 2 N + 8 vectors, of which each is a
+//! bicubic B-spline, however deep it lies. The paper's patches have one extraordinary vertex at most. Where a mesh has others it is refined once (section 2).
+//!
+//! The paper leaves what faces share to rounding. Here edges away from extraordinary vertices are B-splines, summed as in regular faces, and an edge at one
+//! is evaluated by the face that it leaves the vertex in: so all faces there have the same bits.
+
+mod eigenbasis;
+mod net;
+
+use glam::{Vec2, Vec3};
+use rustc_hash::FxHashMap;
+
+use crate::abi;
+use crate::error::Result;
+use crate::mesh::{Model, Scheme};
+use crate::method::points::{Points, Row};
+use crate::method::regular::{regular_surface, turned_corners};
+use crate::method::surface::{Controls, Surface, SurfacePoint};
+use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces, Table};
+use crate::patch::bspline::basis;
+use crate::plan::{Database, SmoothQuads};
+use crate::subdivision::{Blend, Mask, limit_stencil};
+use crate::tessellation::Domain;
+use eigenbasis::{Eigenbasis, PIECES, on_grid};
+use net::{Face, Net};
+
+/// The row of the table.
+pub const METHOD: Method = Method {
+    name: "stam",
+    summary: "the exact Catmull-Clark limit of smooth closed meshes, by eigenbases",
+    paper: "Stam 1998",
+    schemes: &[Scheme::CatmullClark],
+    domains: &[Domain::Quads],
+    contract: Contract {
+        reproduces: Reproduces::Limit(1e-6),
+        normals: Some(0.1),
+        interpolates: false,
+        watertight: true,
+    },
+    uses_tables: false,
+    covers: net::check,
+    prepare,
+    edits: None,
+};
+
+fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
+    let net = Net::new(model);
+    let smooth = SmoothQuads::new(&net.topology);
+    let mut builder = Builder {
+        model,
+        net: &net,
+        smooth: &smooth,
+        irregular: Pass::new("stam", Domain::Quads, 1, irregular),
+        regular: Pass::new("stam_regular", Domain::Quads, 1, regular),
+        bases: Bases::default(),
+        limits: FxHashMap::default(),
+        blends: Vec::new(),
+        vectors: FxHashMap::default(),
+    };
+    let mut points = Points::default();
+    points.blend(0, &net.masks);
+    points.begin(abi::POINTS_LIMIT, points.count);
+    for face in &net.faces {
+        builder.add_limit(face, &mut points);
+    }
+    let first = points.count;
+    for face in &net.faces {
+        builder.add_vectors(face, first);
+    }
+    for face in &net.faces {
+        builder.add(face);
+    }
+    let Builder {
+        mut irregular,
+        regular,
+        bases,
+        blends,
+        ..
+    } = builder;
+    points.blend(first, &blends);
+    irregular.tables = vec![Table::of(&bases.records), Table::of(&bases.floats)];
+    Ok(Prepared {
+        points,
+        ..Prepared::of([irregular, regular])
+    })
+}
+
+/// The eigenbases of the valences that there are, as shaders read them.
+#[derive(Default)]
+struct Bases {
+    numbers: FxHashMap<usize, u32>,
+    /// Rows of the inverses, by number.
+    inverses: Vec<Vec<Vec<f64>>>,
+    records: Vec<abi::Eigenbasis>,
+    floats: Vec<f32>,
+}
+
+impl Bases {
+    /// The number of a valence's.
+    fn number(&mut self, valence: usize) -> u32 {
+        if let Some(&number) = self.numbers.get(&valence) {
+            return number;
+        }
+        let basis = Eigenbasis::new(valence);
+        let count = eigenbasis::vertices(valence);
+        let coefficients = self.floats.len() as u32;
+        for piece in PIECES {
+            let vectors = (0..count).flat_map(|vector| basis.coefficients(vector, piece));
+            self.floats.extend(vectors.map(|weight| weight as f32));
+        }
+        let powers = self.floats.len() as u32;
+        for level in 0..abi::EIGEN_LEVELS as i32 {
+            let values = basis.values().map(|value| value.powi(level) as f32);
+            self.floats.extend(values);
+        }
+        self.records.push(abi::Eigenbasis {
+            count: count as u32,
+            coefficients,
+            powers,
+        });
+        self.inverses.push(basis.inverse());
+        let number = self.numbers.len() as u32;
+        self.numbers.insert(valence, number);
+        number
+    }
+}
+
+/// Puts patches together.
+struct Builder<'a> {
+    model: &'a Model,
+    net: &'a Net,
+    smooth: &'a SmoothQuads<'a>,
+    irregular: Pass,
+    regular: Pass,
+    bases: Bases,
+    /// The points of the limits at extraordinary vertices.
+    limits: FxHashMap<u32, u32>,
+    /// What the points of vectors are sums of.
+    blends: Vec<Mask>,
+    /// Before the point of a face's second vector.
+    vectors: FxHashMap<u32, u32>,
+}
+
+impl Builder<'_> {
+    /// The point of the limit at a face's extraordinary vertex, if it has one.
+    fn add_limit(&mut self, face: &Face, points: &mut Points) {
+        let Some(corner) = face.extraordinary else {
+            return;
+        };
+        let vertex = self.net.topology.face(face.number)[corner as usize];
+        if self.limits.contains_key(&vertex) {
+            return;
+        }
+        let limit = limit_stencil(&self.net.topology, face.number, corner);
+        let limit = limit.expect("nothing is sharp at a vertex that is let through");
+        let masks = [limit.position, limit.du, limit.dv];
+        let [position, du, dv] = masks.map(|mask| Mask::blend(&mask, &self.net.masks));
+        self.limits.insert(vertex, points.count);
+        points.push(Row::Limit([&position, &du, &dv]));
+    }
+
+    /// The points of a face's vectors but the first, which is the limit.
+    fn add_vectors(&mut self, face: &Face, first: u32) {
+        let Some(corner) = face.extraordinary else {
+            return;
+        };
+        let vertices = self.around(face.number, corner);
+        let number = self.bases.number((vertices.len() - 8) / 2);
+        let inverse = &self.bases.inverses[number as usize];
+        self.vectors
+            .insert(face.number, first + self.blends.len() as u32 - 1);
+        for row in &inverse[1..] {
+            let mask: Mask = vertices.iter().copied().zip(row.iter().copied()).collect();
+            self.blends.push(Mask::blend(&mask, &self.net.masks));
+        }
+    }
+
+    /// The vertices that the limit of a face depends on, as they are numbered in `stam/eigenbasis.rs`, from its corner on.
+    fn around(&self, face: u32, corner: u32) -> Vec<u32> {
+        let smooth = self.smooth;
+        let side = |i: u32| 4 * face + (corner + i) % 4;
+        let mut vertices = vec![smooth.vertex_after(side(0), 0)];
+        let mut at = side(0);
+        loop {
+            vertices.extend([1, 2].map(|steps| smooth.vertex_after(at, steps)));
+            at = smooth.around(at);
+            if at == side(0) {
+                break;
+            }
+        }
+        // Across the face's other corners, by quarters around them.
+        let beyond = [
+            (1, 2, 2),
+            (1, 2, 3),
+            (1, 3, 2),
+            (2, 2, 2),
+            (2, 2, 3),
+            (2, 3, 2),
+            (3, 2, 2),
+        ];
+        let beyond = beyond.map(|(corner, quarters, steps)| {
+            let at = (0..quarters).fold(side(corner), |at, _| smooth.around(at));
+            smooth.vertex_after(at, steps)
+        });
+        vertices.extend(beyond);
+        vertices
+    }
+
+    fn add(&mut self, face: &Face) {
+        let turn = face.extraordinary.unwrap_or(0);
+        let (mut patch, texture) = face.patch(self.model, &self.net.topology, turn);
+        patch.flags |= turned_corners(&self.net.topology, self.smooth, face.number, turn);
+        let pass = match face.extraordinary {
+            None => &mut self.regular,
+            Some(_) => &mut self.irregular,
+        };
+        patch.controls = pass.controls.len() as u32;
+        if let Some(vertices) = self.smooth.regular(face.number) {
+            self.regular.controls.extend(vertices);
+        } else {
+            let vertices = self.around(face.number, turn);
+            let valence = (vertices.len() - 8) / 2;
+            patch.plan = self.bases.number(valence);
+            let next = self.smooth.around(4 * face.number + turn) / 4;
+            let controls = &mut self.irregular.controls;
+            controls.push(self.limits[&vertices[0]]);
+            controls.extend([face.number, next].map(|face| self.vectors[&face]));
+            // Where there is no vertex, none counts on the edges that the grid is for.
+            let grid = (0..16).map(|i| [i % 4 - 1, i / 4 - 1]);
+            controls.extend(grid.map(|place| vertices[on_grid(valence, place).unwrap_or(0)]));
+        }
+        let pass = match face.extraordinary {
+            None => &mut self.regular,
+            Some(_) => &mut self.irregular,
+        };
+        pass.texture.push(texture);
+        pass.patches.push(patch);
+    }
+}
+
+/// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex; then
+/// the grid of vertices around it.
+const LIMIT: usize = 0;
+const VECTORS: usize = 1;
+const NEXT_VECTORS: usize = 2;
+const GRID: usize = 3;
+
+fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let record = &pass.patches[patch];
+    let point = |x: usize, y: usize| {
+        let number = pass.controls[record.controls as usize + x + 4 * y];
+        Vec3::from(given.points[number as usize].position)
+    };
+    regular_surface(record.flags, uv, point).point()
+}
+
+fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let record = &pass.patches[patch];
+    let number = |place: usize| pass.controls[record.controls as usize + place];
+    let position = |number: u32| Vec3::from(given.points[number as usize].position);
+    if uv == Vec2::ZERO {
+        let limit = given.points[number(LIMIT) as usize];
+        return SurfacePoint {
+            position: limit.position.into(),
+            normal: limit.normal.into(),
+        };
+    }
+    if uv.max_element() >= 1.0 {
+        let point = |x: usize, y: usize| position(number(GRID + x + 4 * y));
+        return regular_surface(record.flags, uv, point).point();
+    }
+    let next = uv.x <= 0.0;
+    let vectors = number(if next { NEXT_VECTORS } else { VECTORS });
+    let uv = if next { Vec2::new(uv.y, uv.x) } else { uv };
+    let limit = position(number(LIMIT));
+    let point = |vector: u32| position(vectors + vector);
+    eigen_surface(pass, record.plan, uv, limit, point).point()
+}
+
+/// Sum of four products, in the order of a B-spline's.
+fn weighted(w: [f32; 4], p: [f32; 4]) -> f32 {
+    (w[0] * p[0] + w[2] * p[2]) + (w[1] * p[1] + w[3] * p[3])
+}
+
+/// The sum of eigenvectors (section 4, equation 14), where it is not the limit itself. The first vector is one everywhere: it has no derivatives, and its point is
+/// the limit.
+fn eigen_surface(
+    pass: &Pass,
+    plan: u32,
+    uv: Vec2,
+    limit: Vec3,
+    point: impl Fn(u32) -> Vec3,
+) -> Surface {
+    let [bases, floats] = &pass.tables[..] else {
+        return Surface::default();
+    };
+    let bases: &[abi::Eigenbasis] = bytemuck::cast_slice(bases);
+    let floats: &[f32] = bytemuck::cast_slice(floats);
+    // How often the patch is halved: floor(-log2) of the larger coordinate, read off the exponent of the float.
+    let exponent = uv.max_element().to_bits() >> 23;
+    let level = ((127 - exponent.min(126)) - 1).min(abi::EIGEN_LEVELS - 1);
+    let grown = f32::from_bits((127 + level) << 23);
+    let local = grown * uv;
+    let [beyond_u, beyond_v] = [local.x, local.y].map(|x| u32::from(x >= 0.5));
+    let own = 2.0 * local - Vec2::new(beyond_u as f32, beyond_v as f32);
+    let piece = (beyond_u + 2 * beyond_v).max(1) - 1;
+    let (u, v) = (basis(own.x), basis(own.y));
+    let abi::Eigenbasis {
+        count,
+        coefficients,
+        powers,
+    } = bases[plan as usize];
+    let first = coefficients + 16 * (piece * count);
+    let power = powers + level * count;
+    let (mut position, mut du, mut dv) = (limit, Vec3::ZERO, Vec3::ZERO);
+    for i in 1..count {
+        let rows = [0, 1, 2, 3].map(|y| {
+            let at = (first + 16 * i + 4 * y) as usize;
+            [floats[at], floats[at + 1], floats[at + 2], floats[at + 3]]
+        });
+        let values = rows.map(|row| weighted(u.value, row));
+        let slopes = rows.map(|row| weighted(u.derivative, row));
+        let point = floats[(power + i) as usize] * point(i);
+        position += weighted(v.value, values) * point;
+        du += weighted(v.value, slopes) * point;
+        dv += weighted(v.derivative, values) * point;
+    }
+    // Each halving doubles derivatives, and the pieces are quarters.
+    let scale = 2.0 * grown;
+    Surface {
+        position,
+        du: scale * du,
+        dv: scale * dv,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+use glam::Vec2;
+
+use super::*;
+use crate::mesh::{ControlMesh, builtin};
+use crate::method::to_ptex;
+use crate::subdivision::LimitSurface;
+
+fn built_in(name: &str) -> Model {
+    Model::new(builtin(name).expect("a built-in shape"))
+}
+
+/// A ball of two poles of `n` quads: rings of quads around, of which the first at a pole are `n` quads at one vertex.
+fn bipole(n: usize) -> Model {
+    let rings = 5;
+    let mut positions = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    for ring in 0..rings {
+        let height = 0.8 - 1.6 * f64::from(ring) / f64::from(rings - 1);
+        let around = 0..2 * n;
+        positions.extend(around.map(|i| {
+            let angle = std::f64::consts::PI * i as f64 / n as f64;
+            let radius = (1.0 - height * height).sqrt() * (1.0 + 0.1 * (3.0 * angle).sin());
+            [radius * angle.cos(), radius * angle.sin(), height]
+        }));
+    }
+    let at = |ring: i32, i: usize| (2 + ring as usize * 2 * n + i % (2 * n)) as u32;
+    let mut faces = Vec::new();
+    for i in 0..n {
+        faces.push([0, at(0, 2 * i), at(0, 2 * i + 1), at(0, 2 * i + 2)]);
+        let last = rings - 1;
+        faces.push([1, at(last, 2 * i + 2), at(last, 2 * i + 1), at(last, 2 * i)]);
+    }
+    for ring in 0..rings - 1 {
+        for i in 0..2 * n {
+            faces.push([
+                at(ring, i),
+                at(ring + 1, i),
+                at(ring + 1, i + 1),
+                at(ring, i + 1),
+            ]);
+        }
+    }
+    let sizes = vec![4; faces.len()];
+    let mesh = ControlMesh::builder(&positions, &sizes, faces.as_flattened());
+    Model::new(mesh.build().expect("it is sound"))
+}
+
+/// The greatest distance over the diagonal, and the greatest angle in degrees, between the twin and the truth.
+fn off(model: &Model) -> (f64, f64) {
+    let prepared = METHOD.prepare(model, MethodOptions::default());
+    let prepared = prepared.expect("it is smooth and closed");
+    let truth = LimitSurface::new(model.mesh());
+    let controls = prepared.controls(model.positions());
+    let (mut distance, mut angle) = (0.0f64, 0.0f64);
+    for pass in &prepared.passes {
+        for (number, patch) in pass.patches.iter().enumerate() {
+            for uv in [
+                [0.0, 0.0],
+                [1.0, 0.0],
+                [1.0, 1.0],
+                [0.0, 0.375],
+                [0.625, 0.0],
+                [1.0, 0.25],
+                [0.5, 0.5],
+                [0.3, 0.7],
+                [0.015625, 0.0],
+                [0.002, 0.011],
+                [1e-4, 3e-5],
+            ] {
+                let own = pass.evaluate(&controls, number, Vec2::from(uv));
+                let [u, v] = to_ptex(patch, uv).map(f64::from);
+                let right = truth.evaluate(patch.ptex as usize, u, v);
+                let right = right.expect("holes are not drawn");
+                let position = model.placement().local(right.position);
+                let apart = own.position.as_dvec3().distance(position) / model.diagonal();
+                distance = distance.max(apart);
+                let normal = right.normal();
+                angle = angle.max(own.normal.as_dvec3().angle_between(normal).to_degrees());
+            }
+        }
+    }
+    (distance, angle)
+}
+
+#[test]
+fn the_limit_and_its_normals_are_exact_at_every_valence() {
+    for valence in [3, 5, 6, 7, 8, 9, 12, 17, 50] {
+        let (distance, angle) = off(&bipole(valence));
+        println!("{valence}: {distance:.1e}, {angle:.1e} degrees");
+        assert!(distance <= 1e-6, "{valence}: {distance}");
+        assert!(angle <= 0.1, "{valence}: {angle}");
+    }
+}
+
+#[test]
+fn meshes_whose_extraordinary_vertices_are_not_apart_are_refined_once() {
+    let count = |model: &Model| {
+        let prepared = METHOD.prepare(model, MethodOptions::default());
+        let passes = prepared.expect("it is smooth and closed").passes;
+        passes.iter().map(|pass| pass.patches.len()).sum::<usize>()
+    };
+    let apart = bipole(5);
+    assert_eq!(count(&apart), apart.topology().face_count());
+    let cube = built_in("cube");
+    assert_eq!(count(&cube), 24);
+    let (distance, angle) = off(&cube);
+    assert!(distance <= 1e-6 && angle <= 0.1, "{distance} {angle}");
+}
+
+#[test]
+fn what_has_no_eigenbasis_is_refused_by_its_place() {
+    let refusal = |name: &str| {
+        let refused = METHOD.check_model(&built_in(name));
+        refused.expect_err("it is refused").to_string()
+    };
+    assert!(refusal("creased-torus").contains("it is a crease"));
+    assert!(refusal("sheet").contains("it is a boundary"));
+    let tetrahedron = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ];
+    let faces = [0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3];
+    let mesh = ControlMesh::builder(&tetrahedron, &[3; 4], &faces);
+    let model = Model::new(mesh.build().expect("it is sound"));
+    let refused = METHOD
+        .check_model(&model)
+        .expect_err("it is refused")
+        .to_string();
+    assert!(refused.contains("two extraordinary vertices"), "{refused}");
+    let refused = METHOD.check_model(&bipole(51)).expect_err("it is refused");
+    assert!(refused.to_string().contains("51 faces"), "{refused}");
+}

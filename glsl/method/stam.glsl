@@ -20,12 +20,13 @@ vec3 patch_point(Patch record, uint number) { return vec3(0.0); }
 #endif
 
 #ifdef STAGE_EVALUATION
-// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex; then
-// the grid of vertices around it.
+// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex, unless that
+// is a hole; then the grid of vertices around it.
 const uint LIMIT = 0u;
 const uint VECTORS = 1u;
 const uint NEXT_VECTORS = 2u;
 const uint GRID = 3u;
+const uint HOLE = 0xffffffffu;
 
 vec3 grid_point(Patch record, uint i) { return patch_control(record, GRID + i).position; }
 
@@ -90,7 +91,7 @@ Surface eigen_surface(Patch record, uint vectors, vec2 uv) {
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     if (uv == vec2(0.0)) return patch_control(record, LIMIT);
     if (uv.x >= 1.0 || uv.y >= 1.0) return surface_point(regular_surface(record, uv));
-    bool next = uv.x <= 0.0;
+    bool next = uv.x <= 0.0 && control_at(record.controls + NEXT_VECTORS) != HOLE;
     uint vectors = control_at(record.controls + (next ? NEXT_VECTORS : VECTORS));
     return surface_point(eigen_surface(record, vectors, next ? uv.yx : uv));
 }

@@ -227,7 +227,8 @@ impl Builder<'_> {
             let next = self.smooth.around(4 * face.number + turn) / 4;
             let controls = &mut self.irregular.controls;
             controls.push(self.limits[&vertices[0]]);
-            controls.extend([face.number, next].map(|face| self.vectors[&face]));
+            let vectors = |face: u32| self.vectors.get(&face).copied().unwrap_or(HOLE);
+            controls.extend([face.number, next].map(vectors));
             // Where there is no vertex, none counts on the edges that the grid is for.
             let grid = (0..16).map(|i| [i % 4 - 1, i / 4 - 1]);
             controls.extend(grid.map(|place| vertices[on_grid(valence, place).unwrap_or(0)]));
@@ -241,12 +242,13 @@ impl Builder<'_> {
     }
 }
 
-/// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex; then
-/// the grid of vertices around it.
+/// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex, unless that
+/// is a hole; then the grid of vertices around it.
 const LIMIT: usize = 0;
 const VECTORS: usize = 1;
 const NEXT_VECTORS: usize = 2;
 const GRID: usize = 3;
+const HOLE: u32 = u32::MAX;
 
 fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let record = &pass.patches[patch];
@@ -272,7 +274,7 @@ fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePo
         let point = |x: usize, y: usize| position(number(GRID + x + 4 * y));
         return regular_surface(record.flags, uv, point).point();
     }
-    let next = uv.x <= 0.0;
+    let next = uv.x <= 0.0 && number(NEXT_VECTORS) != HOLE;
     let vectors = number(if next { NEXT_VECTORS } else { VECTORS });
     let uv = if next { Vec2::new(uv.y, uv.x) } else { uv };
     let limit = position(number(LIMIT));

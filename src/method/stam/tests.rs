@@ -11,6 +11,11 @@ fn built_in(name: &str) -> Model {
 
 /// A ball of two poles of `n` quads: rings of quads around, of which the first at a pole are `n` quads at one vertex.
 fn bipole(n: usize) -> Model {
+    with_holes(n, &[])
+}
+
+/// The same with holes; faces 0, 2, 4 and so on are around one of the poles.
+fn with_holes(n: usize, holes: &[u32]) -> Model {
     let rings = 5;
     let mut positions = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
     for ring in 0..rings {
@@ -41,6 +46,7 @@ fn bipole(n: usize) -> Model {
     }
     let sizes = vec![4; faces.len()];
     let mesh = ControlMesh::builder(&positions, &sizes, faces.as_flattened());
+    let mesh = holes.iter().fold(mesh, |mesh, &hole| mesh.hole(hole));
     Model::new(mesh.build().expect("it is sound"))
 }
 
@@ -89,6 +95,12 @@ fn the_limit_and_its_normals_are_exact_at_every_valence() {
         assert!(distance <= 1e-6, "{valence}: {distance}");
         assert!(angle <= 0.1, "{valence}: {angle}");
     }
+}
+
+#[test]
+fn beside_a_hole_a_face_is_on_its_own() {
+    let (distance, angle) = off(&with_holes(5, &[0, 4]));
+    assert!(distance <= 1e-6 && angle <= 0.1, "{distance} {angle}");
 }
 
 #[test]

@@ -42,6 +42,9 @@ pub struct SurfaceOptions {
     pub decides: Decides,
     /// Vertices that can be captured at once; 0 for none.
     pub capture_vertices: u32,
+    /// Vertices that a batch has at most, unless a single patch has more: for frames that are drawn in slices, batch by batch. `u32::MAX` where that does not
+    /// matter.
+    pub batch_vertices: u32,
     /// Counts the vertices of each patch as they are evaluated, so that `gpu::TessellatedSurface::arrival` tells whether the device lost any.
     /// Costs an atomic operation a vertex. Not together with a capture, which tells as much.
     pub count_vertices: bool,
@@ -62,7 +65,7 @@ pub struct SurfaceOptions {
 }
 
 impl Default for SurfaceOptions {
-    /// The tessellator, control points in a ring of 1 MiB with counters, decided by the host, no capture, no counts, every level, one round, 64 views,
+    /// The tessellator, control points in a ring of 1 MiB with counters, decided by the host, no capture, batches of any size, no counts, every level, one round, 64 views,
     /// barriers by `cmd_draw`.
     fn default() -> SurfaceOptions {
         SurfaceOptions {
@@ -72,6 +75,7 @@ impl Default for SurfaceOptions {
             slots: Slots::Counter,
             decides: Decides::Host,
             capture_vertices: 0,
+            batch_vertices: u32::MAX,
             count_vertices: false,
             rounds: 1,
             views: 64,
@@ -129,6 +133,7 @@ impl SurfaceOptions {
             0 => u32::MAX / 2,
             captured => captured,
         };
+        let vertices = vertices.min(self.batch_vertices);
         Bounds {
             ring: (self.residence == Residence::Ring).then(|| self.ring_points()),
             vertices,

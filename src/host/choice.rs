@@ -43,6 +43,11 @@ impl DeviceInfo {
         }
     }
 
+    /// Whether it is a driver that computes everything itself.
+    pub fn is_software(&self) -> bool {
+        self.kind == vk::PhysicalDeviceType::CPU
+    }
+
     /// Whether it will do.
     pub fn is_suitable(&self) -> bool {
         self.missing.is_empty()

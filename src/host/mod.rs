@@ -25,6 +25,7 @@ pub use instance::Instance;
 pub use offscreen::{Encoding, OffscreenTarget};
 pub use owned::{Destroy, Owned};
 pub use pipeline_cache::PipelineCache;
+pub use render_pass::Slice;
 pub use statistics::StatisticsQuery;
 pub(crate) use storage_set::StorageSet;
 pub use swapchain::{Image, Pacing, Shown, Swapchain, WindowSurface};

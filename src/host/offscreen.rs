@@ -1,12 +1,14 @@
 //! A picture to draw into without a window, and to read back.
 
+mod slices;
+
 use crate::error::{Error, Result};
 use crate::gpu::memory::free;
 use crate::gpu::{Buffer, failed};
 use crate::host::Device;
 use crate::host::area::Area;
 use crate::host::image::Image;
-use crate::host::render_pass::{self, Formats};
+use crate::host::render_pass::{self, Formats, Slice};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 
@@ -45,6 +47,8 @@ pub struct OffscreenTarget {
     formats: Formats,
     render_pass: vk::RenderPass,
     framebuffer: vk::Framebuffer,
+    /// For pictures that are drawn in several passes.
+    slices: Option<slices::Slices>,
     /// Colour, depth, and with several samples the resolved colour, as the render pass numbers them.
     images: Vec<Image>,
     pixels: Option<Buffer>,
@@ -116,11 +120,12 @@ impl OffscreenTarget {
             formats,
             render_pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
+            slices: None,
             images: Vec::new(),
             pixels: None,
         };
         // SAFETY: the device is live; formats and samples were checked against its limits.
-        target.render_pass = unsafe { render_pass::create(device.raw(), formats) }?;
+        target.render_pass = unsafe { render_pass::create(device.raw(), formats, Slice::Whole) }?;
         target.make()?;
         Ok(target)
     }
@@ -182,7 +187,7 @@ impl OffscreenTarget {
     pub unsafe fn begin(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
         // SAFETY: this function's contract.
         unsafe {
-            self.begin_with(cmd, clear, vk::SubpassContents::INLINE);
+            self.begin_with(cmd, clear, self.whole(), vk::SubpassContents::INLINE);
             self.cmd_set_view(cmd);
         }
     }
@@ -192,8 +197,9 @@ impl OffscreenTarget {
     /// # Safety
     /// As [`begin`](Self::begin).
     pub unsafe fn begin_for_secondary(&self, cmd: vk::CommandBuffer, clear: [f32; 4]) {
+        let contents = vk::SubpassContents::SECONDARY_COMMAND_BUFFERS;
         // SAFETY: this function's contract.
-        unsafe { self.begin_with(cmd, clear, vk::SubpassContents::SECONDARY_COMMAND_BUFFERS) };
+        unsafe { self.begin_with(cmd, clear, self.whole(), contents) };
     }
 
     /// # Safety
@@ -202,6 +208,7 @@ impl OffscreenTarget {
         &self,
         cmd: vk::CommandBuffer,
         clear: [f32; 4],
+        (render_pass, framebuffer): (vk::RenderPass, vk::Framebuffer),
         contents: vk::SubpassContents,
     ) {
         let colour = vk::ClearColorValue { float32: clear };
@@ -217,8 +224,8 @@ impl OffscreenTarget {
         ];
         let area = self.area.rect(self.part);
         let info = vk::RenderPassBeginInfo::default()
-            .render_pass(self.render_pass)
-            .framebuffer(self.framebuffer)
+            .render_pass(render_pass)
+            .framebuffer(framebuffer)
             .render_area(area)
             .clear_values(&clears);
         // SAFETY: this function's contract; pass and framebuffer are of this device and match.
@@ -333,6 +340,7 @@ impl OffscreenTarget {
 
     /// Gives them back.
     fn free(&mut self) {
+        self.slices = None;
         let device = self.device.raw();
         let mut allocator = self.device.allocator();
         // SAFETY: all of it was made from this device; the device waits for each submission, so nothing is in use.

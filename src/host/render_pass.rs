@@ -21,27 +21,58 @@ impl Formats {
     }
 }
 
-/// One subpass over attachments 0 colour, 1 depth, 2 resolved colour if there are several samples.
+/// What a pass draws of a picture: all passes of a picture are compatible (Vulkan spec, "Render Pass Compatibility": with a single subpass whether it
+/// resolves makes no difference).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slice {
+    /// All of it.
+    Whole,
+    /// What comes first; more comes behind.
+    First,
+    /// What comes neither first nor last.
+    Between,
+    /// What is left.
+    Last,
+}
+
+impl Slice {
+    /// Whether it begins the picture.
+    pub fn begins(self) -> bool {
+        matches!(self, Slice::Whole | Slice::First)
+    }
+
+    /// Whether the picture is there afterwards.
+    pub fn ends(self) -> bool {
+        matches!(self, Slice::Whole | Slice::Last)
+    }
+}
+
+/// One subpass over attachments 0 colour, 1 depth, and at the end of a picture 2 resolved colour if there are several samples.
 ///
 /// The picture ends in `TRANSFER_SRC_OPTIMAL`, ready to be copied.
 ///
 /// # Safety
 /// `device` is live and supports the formats and samples as attachments.
-pub(super) unsafe fn create(device: &ash::Device, formats: Formats) -> Result<vk::RenderPass> {
-    let mut attachments = vec![colour(formats), depth(formats)];
-    if formats.resolves() {
+pub(super) unsafe fn create(
+    device: &ash::Device,
+    formats: Formats,
+    slice: Slice,
+) -> Result<vk::RenderPass> {
+    let mut attachments = vec![colour(formats, slice), depth(formats, slice)];
+    let resolves = formats.resolves() && slice.ends();
+    if resolves {
         attachments.push(resolved(formats));
     }
     let reference = |attachment, layout| vk::AttachmentReference { attachment, layout };
     let colours = [reference(0, Layout::COLOR_ATTACHMENT_OPTIMAL)];
     let depth = reference(1, Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-    let resolves = [reference(2, Layout::COLOR_ATTACHMENT_OPTIMAL)];
+    let resolved = [reference(2, Layout::COLOR_ATTACHMENT_OPTIMAL)];
     let mut subpass = vk::SubpassDescription::default()
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
         .color_attachments(&colours)
         .depth_stencil_attachment(&depth);
-    if formats.resolves() {
-        subpass = subpass.resolve_attachments(&resolves);
+    if resolves {
+        subpass = subpass.resolve_attachments(&resolved);
     }
     let subpasses = [subpass];
     let dependencies = [before(), ring_dependency(0), after()];
@@ -53,22 +84,41 @@ pub(super) unsafe fn create(device: &ash::Device, formats: Formats) -> Result<vk
     unsafe { device.create_render_pass(&info, None) }.map_err(failed("vkCreateRenderPass"))
 }
 
-fn colour(formats: Formats) -> vk::AttachmentDescription {
-    let (store, layout) = if formats.resolves() {
-        let stays = Layout::COLOR_ATTACHMENT_OPTIMAL;
-        (vk::AttachmentStoreOp::DONT_CARE, stays)
-    } else {
-        (vk::AttachmentStoreOp::STORE, Layout::TRANSFER_SRC_OPTIMAL)
+fn colour(formats: Formats, slice: Slice) -> vk::AttachmentDescription {
+    let layout = match formats.resolves() {
+        true => Layout::COLOR_ATTACHMENT_OPTIMAL,
+        false => Layout::TRANSFER_SRC_OPTIMAL,
     };
-    cleared(formats.colour, formats.samples)
-        .store_op(store)
-        .final_layout(layout)
+    let is_kept = !(formats.resolves() && slice.ends());
+    sliced(formats.colour, formats, slice, is_kept, layout)
 }
 
-fn depth(formats: Formats) -> vk::AttachmentDescription {
-    cleared(formats.depth, formats.samples)
-        .store_op(vk::AttachmentStoreOp::DONT_CARE)
-        .final_layout(Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL)
+fn depth(formats: Formats, slice: Slice) -> vk::AttachmentDescription {
+    let layout = Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    sliced(formats.depth, formats, slice, !slice.ends(), layout)
+}
+
+/// An attachment that goes from slice to slice.
+fn sliced(
+    format: vk::Format,
+    formats: Formats,
+    slice: Slice,
+    is_kept: bool,
+    layout: Layout,
+) -> vk::AttachmentDescription {
+    let store = match is_kept {
+        true => vk::AttachmentStoreOp::STORE,
+        false => vk::AttachmentStoreOp::DONT_CARE,
+    };
+    let attachment = cleared(format, formats.samples)
+        .store_op(store)
+        .final_layout(layout);
+    match slice.begins() {
+        true => attachment,
+        false => attachment
+            .load_op(vk::AttachmentLoadOp::LOAD)
+            .initial_layout(layout),
+    }
 }
 
 fn resolved(formats: Formats) -> vk::AttachmentDescription {

@@ -322,6 +322,11 @@ pub fn prepare_by_default_with(
     Err(refusals.swap_remove(0))
 }
 
+/// The method by which [`prepare_by_default`] draws a model unless it refuses that.
+pub fn method_by_default(model: &Model) -> &'static Method {
+    nearest(model, METHODS.iter())
+}
+
 /// The way out when a method refuses a model: what draws it when that one does not.
 fn instead_of(refusing: &str, model: &Model) -> &'static Method {
     nearest(

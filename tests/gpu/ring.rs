@@ -85,6 +85,15 @@ fn bits_do_not_depend_on_batches() {
                     assert_same_bits(&what, &frame, &reference);
                 }
             }
+            // No batch but of a single patch has more vertices than it may.
+            let mut loaded = load(&gpu, &model, &known, cut, |_, options| {
+                options.batch_vertices = 300;
+            });
+            let list = loaded.draw_list(cut).expect("it fits");
+            let few = |batch: Batch<'_>| batch.vertices() <= 300 || batch.patches().len() == 1;
+            assert!(list.batches().all(few), "{name} {cut:?}");
+            let frame = loaded.capture(cut, Fill::Discard).expect("it is drawn");
+            assert_same_bits("small batches", &frame, &reference);
             let mut loaded = load(&gpu, &model, &[&ONE_A_TIME], cut, |_, _| ());
             let frame = loaded.capture(cut, Fill::Discard).expect("it is drawn");
             assert_same_bits("a patch an instance", &frame, &reference);

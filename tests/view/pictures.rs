@@ -17,8 +17,12 @@ const FINER_LINES: f64 = 4.5;
 /// What has lines whose width goes by pixels, or squares with sharp sides.
 const LINED: [&str; 4] = ["node kinds", "levels", "tree depth", "checker"];
 
-/// What is pressed from one picture to the next, so that in the end each choice has met many others; one for each kind of faces.
-const WALKS: [(&str, &str); 3] = [
+/// Rows at the bottom in which stands what colours mean.
+const LEGEND: u32 = 60;
+
+/// What is pressed from one picture to the next, so that in the end each choice has met many others; one for what the device decides, and one for each kind of faces.
+const WALKS: [(&str, &str); 4] = [
+    ("builtin:hull", "a k ka kac ka"),
     ("builtin:ngons", "c mb c o bc brc lc zc ac w"),
     ("builtin:cube", "w wmmmc bc rc lc mb c kc mb oc mb c mzc mc"),
     ("builtin:hull", "MM mmc bc bc oc rc c"),
@@ -97,7 +101,9 @@ fn compared(session: &Session, seen: &mut [BTreeSet<String>; 5]) -> Option<Strin
     }
     let line = state["copied"].as_str().expect("a command line");
     let drawn = draw(session, line);
-    let apart = picture.difference(&drawn, false);
+    let [width, height] = picture.size;
+    let upper = [0, 0, width, height - LEGEND];
+    let apart = picture.part(upper).difference(&drawn.part(upper), false);
     let wires = look["wireframe"] == true;
     let is_lined = wires || LINED.iter().any(|lined| look["shading"] == *lined);
     let most = if is_lined { FINER_LINES } else { FINER };

@@ -170,7 +170,7 @@ fn freezes(session: &Session) {
     }
     session.until("fine", |state| number(&state["cut"]["level"]) > 20.0);
     session.press('a');
-    session.until("by pixels", |state| state["cut"]["pixels"] == 8.0);
+    session.until("by pixels", |state| state["cut"]["adaptive"] == "screen:8");
     session.press('z');
     let state = session.until("frozen", |state| state["frozen"] == true);
     let vertices = state["vertices"].clone();
@@ -196,9 +196,11 @@ fn freezes(session: &Session) {
             && number(&state["scenes"]) > scenes
             && number(&state["vertices"]) < number(&vertices)
     });
-    session.press('a');
+    (0..3).for_each(|_| session.press('a'));
     session.press('4');
-    session.until("one level again", |state| state["cut"]["pixels"].is_null());
+    session.until("one level again", |state| {
+        state["cut"]["adaptive"].is_null()
+    });
 }
 
 fn compares(session: &Session) {
@@ -248,7 +250,8 @@ fn compares(session: &Session) {
 fn changes(session: &Session) {
     session.press('d');
     session.until("edges are picked", |state| {
-        state["selection"]["tool"] == "edges" && state["look"]["cage"] == true
+        let is_live = state["models"][0]["live"] == true;
+        state["selection"]["tool"] == "edges" && state["look"]["cage"] == true && is_live
     });
     pick_an_edge(session);
     let state = session.state();
@@ -269,6 +272,7 @@ fn changes(session: &Session) {
         number(&state["models"][0]["creases"]) != creases
             && state["models"][0]["version"] != version
     });
+    assert_eq!(state["models"][0]["live"], true, "it was edited in place");
     assert_eq!(state["models"][0]["steps"][0], 1, "a drag is one step");
     other(session, &before, "sharper");
     session.control('z');

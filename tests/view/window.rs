@@ -170,7 +170,8 @@ impl Session {
             let frames = self.state()["frames"].clone();
             let (size, pixels) = self.hand.picture(self.window);
             let now = Picture { size, pixels };
-            if last.as_ref() == Some(&(frames.clone(), now.clone())) {
+            let settled = self.state()["settled"] == true;
+            if settled && last.as_ref() == Some(&(frames.clone(), now.clone())) {
                 return now;
             }
             last = Some((frames, now));

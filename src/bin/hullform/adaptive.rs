@@ -1,5 +1,6 @@
 //! `--adaptive`: what depth tags go by.
 
+use std::fmt;
 use std::str::FromStr;
 
 use glam::{Mat4, Vec3};
@@ -22,6 +23,28 @@ pub enum Adaptive {
 const PIXELS: f32 = 8.0;
 /// Degrees of a segment.
 const DEGREES: f32 = 5.0;
+
+impl Adaptive {
+    /// One of each kind, as it is when nobody says more.
+    #[cfg(feature = "view")]
+    pub const ALL: [Adaptive; 3] = [
+        Adaptive::Screen(PIXELS),
+        Adaptive::Distance(None),
+        Adaptive::Curvature(DEGREES),
+    ];
+}
+
+/// As the command line has it.
+impl fmt::Display for Adaptive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Adaptive::Distance(None) => write!(f, "distance"),
+            Adaptive::Distance(Some(units)) => write!(f, "distance:{units}"),
+            Adaptive::Screen(pixels) => write!(f, "screen:{pixels}"),
+            Adaptive::Curvature(degrees) => write!(f, "curvature:{degrees}"),
+        }
+    }
+}
 
 impl FromStr for Adaptive {
     type Err = &'static str;
@@ -120,6 +143,10 @@ mod tests {
         assert_eq!("screen:4".parse(), Ok(Adaptive::Screen(4.0)));
         assert_eq!("curvature".parse(), Ok(Adaptive::Curvature(DEGREES)));
         assert_eq!("distance".parse(), Ok(Adaptive::Distance(None)));
+        for right in ["distance", "distance:2.5", "screen:4", "curvature:7.5"] {
+            let read: Adaptive = right.parse().expect(right);
+            assert_eq!(read.to_string(), right);
+        }
         for wrong in [
             "",
             "near",

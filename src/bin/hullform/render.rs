@@ -80,6 +80,15 @@ impl Arguments {
         self.size
     }
 
+    /// What is decided about patches.
+    #[cfg(test)]
+    pub fn wanted(&self) -> Wanted {
+        Wanted {
+            adaptive: self.cut.cutting().adaptive,
+            culling: self.cull,
+        }
+    }
+
     /// The eye that was chosen.
     #[cfg(test)]
     pub fn eye(&self) -> Option<Eye> {

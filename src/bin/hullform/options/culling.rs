@@ -1,5 +1,6 @@
 //! `--cull`: what is left out of a picture.
 
+use std::fmt;
 use std::str::FromStr;
 
 use super::Cull;
@@ -19,6 +20,24 @@ impl Culling {
     /// Whether patches are left out that triangles would not be.
     pub fn needs_decisions(self) -> bool {
         self.frustum || self.small
+    }
+}
+
+/// As the command line has it.
+impl fmt::Display for Culling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let triangles = match self.triangles {
+            Cull::None => None,
+            Cull::Back => Some("back"),
+            Cull::Front => Some("front"),
+        };
+        let patches = [(self.frustum, "frustum"), (self.small, "small")];
+        let patches = patches.iter().filter_map(|&(on, name)| on.then_some(name));
+        let words: Vec<&str> = triangles.into_iter().chain(patches).collect();
+        match words.is_empty() {
+            true => write!(f, "none"),
+            false => write!(f, "{}", words.join(",")),
+        }
     }
 }
 
@@ -74,6 +93,7 @@ mod tests {
             ("all", culling(Cull::Back, true, true)),
         ] {
             assert_eq!(text.parse(), Ok(right), "{text}");
+            assert_eq!(right.to_string().parse(), Ok(right), "{text}");
         }
         for wrong in [
             "",

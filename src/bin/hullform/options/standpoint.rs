@@ -97,14 +97,4 @@ impl Cull {
             Cull::Front => vk::CullModeFlags::FRONT,
         }
     }
-
-    /// As the command line has it.
-    #[cfg(feature = "view")]
-    pub fn name(self) -> &'static str {
-        match self {
-            Cull::None => "none",
-            Cull::Back => "back",
-            Cull::Front => "front",
-        }
-    }
 }

@@ -129,7 +129,8 @@ pub fn to_linear(x: f32) -> f32 {
     }
 }
 
-fn to_srgb(x: f32) -> u8 {
+/// A share of linear light as sRGB has it.
+pub fn to_srgb(x: f32) -> u8 {
     let x = x.clamp(0.0, 1.0);
     let encoded = if x <= 0.003_130_8 {
         12.92 * x

@@ -337,8 +337,8 @@ impl Open {
         let program = &self.program;
         self.log.add(|| program.state());
         self.wanted |= matches!(outcome.shown, Shown::NotYet | Shown::WindowChanged);
-        let moving = self.program.viewer.is_moving() && outcome.shown != Shown::Hidden;
-        self.wanted |= moving || self.program.canvas.is_shooting();
+        let moving = self.program.viewer.is_moving() || self.program.is_drawing();
+        self.wanted |= moving && outcome.shown != Shown::Hidden;
         let mut soon = delay.filter(|delay| *delay < Duration::from_secs(60));
         if outcome.scene {
             // What the scene cost is told by the next frame, and what waits until it is there begins.

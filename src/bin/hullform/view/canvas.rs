@@ -36,9 +36,13 @@ pub struct Canvas {
     /// For egui's textures.
     pool: vk::CommandPool,
     target: Option<OffscreenTarget>,
+    /// Where the target has a picture; it has none at first.
+    seen: Option<Area>,
     samples: u32,
     /// A picture of the window that was asked for.
     shot: Option<Shot>,
+    /// Whether the last frame took it.
+    taken: bool,
     /// Textures that egui has given up, and that the last frame may still show.
     unused: Vec<egui::TextureId>,
     swapchain: Swapchain,
@@ -60,8 +64,10 @@ impl Canvas {
             framebuffers: Vec::new(),
             pool: vk::CommandPool::null(),
             target: None,
+            seen: None,
             samples,
             shot: None,
+            taken: false,
             unused: Vec::new(),
             swapchain,
             device: device.clone(),
@@ -82,6 +88,12 @@ impl Canvas {
     /// The format of the scene's picture: the window's, encoded by the device.
     pub fn scene_format(&self) -> vk::Format {
         self.swapchain.picture_format()
+    }
+
+    /// Whether a scene that is drawn over several frames leaves the last one to be seen.
+    pub fn keeps_scene(&self) -> bool {
+        let target = self.target.as_ref();
+        target.is_some_and(OffscreenTarget::keeps_picture)
     }
 
     /// Draws only a part of the scene's picture from now on.
@@ -138,12 +150,12 @@ impl Canvas {
         self.make_images()
     }
 
-    /// Draws the scene anew, if `scene` is given, and then the window: the scene's area, and panels over it. Only when it is not busy.
+    /// Draws something of the scene, if `scene` is given with the area that has it once it is whole, where this is the last of it; then the window: the
+    /// last whole scene, and panels over it. Only when it is not busy.
     pub fn show(
         &mut self,
         panels: &Panels,
-        area: Area,
-        scene: Option<&mut Record<'_>>,
+        scene: Option<(&mut Record<'_>, Option<Area>)>,
     ) -> Result<Shown> {
         self.take_textures(panels)?;
         let (Some(target), Some(renderer)) = (&self.target, &mut self.panels) else {
@@ -151,11 +163,14 @@ impl Canvas {
         };
         let (device, pass, shot) = (self.device.raw(), self.pass, self.shot.as_ref());
         let framebuffers = &self.framebuffers;
-        let seen = (!area.is_empty()).then(|| (target, area.in_picture()));
+        let (last, taken) = (&mut self.seen, &mut self.taken);
         self.swapchain.frame(|swapchain, cmd, image| {
-            if let Some(scene) = scene {
+            if let Some((scene, whole)) = scene {
                 scene(cmd, target)?;
+                *last = whole.or(*last);
             }
+            let seen = last.filter(|area| !area.is_empty());
+            let seen = seen.map(|area| (target, area.in_picture()));
             // SAFETY: recording on the device that made everything; the target's pass has ended, and left its picture to be copied.
             unsafe {
                 swapchain.cmd_copy(cmd, image, seen, DRAWN);
@@ -167,6 +182,7 @@ impl Canvas {
                 device.cmd_end_render_pass(cmd);
                 if let Some(shot) = shot.filter(|shot| shot.fits(image.extent)) {
                     shot.cmd_take(device, cmd, image);
+                    *taken = true;
                 }
             }
             drawn.map_err(of_panels)
@@ -180,12 +196,13 @@ impl Canvas {
             return Ok(false);
         }
         self.shot = Some(Shot::new(&self.device, extent)?);
+        self.taken = false;
         Ok(true)
     }
 
     /// The picture that was taken, RGBA with its size; once its frame is done.
     pub fn take_shot(&mut self) -> Option<([u32; 2], Vec<u8>)> {
-        let shot = self.shot.take()?;
+        let shot = self.shot.take_if(|_| std::mem::take(&mut self.taken))?;
         let pixels = swizzled(shot.bytes(), self.swapchain.format());
         Some((self.size(), pixels))
     }
@@ -213,18 +230,13 @@ impl Canvas {
 
     fn make_images(&mut self) -> Result<()> {
         let [width, height] = self.size();
-        self.target = None;
+        (self.target, self.seen) = (None, None);
         if width == 0 || height == 0 {
             return Ok(());
         }
         let (device, format) = (&self.device, self.scene_format());
-        self.target = Some(OffscreenTarget::with_format(
-            device,
-            width,
-            height,
-            self.samples,
-            format,
-        )?);
+        let target = OffscreenTarget::with_format(device, width, height, self.samples, format);
+        self.target.insert(target?).allow_slices()?;
         for view in self.swapchain.views() {
             let views = [view];
             let info = vk::FramebufferCreateInfo::default()

@@ -2,6 +2,8 @@
 
 mod edits;
 
+use std::mem::discriminant;
+
 use egui::{Key, Modifiers};
 use hullform::gpu::{Backend, Residence};
 use hullform::mesh::Scheme;
@@ -11,7 +13,8 @@ use hullform::tessellation::Spacing;
 use super::context::greatest_level;
 use super::orbit::Preset;
 use super::selection::Tool;
-use super::viewer::{Beside, Cull, ErrorKind, Intent, Viewer, Wish};
+use super::viewer::{Beside, ErrorKind, Intent, Viewer, Wish};
+use crate::adaptive::Adaptive;
 use crate::render::Shading;
 
 /// Something to do.
@@ -152,7 +155,11 @@ pub const KEYS: &[Binding] = &[
     plain(Key::B, Command::Backend, "next back-end"),
     plain(Key::R, Command::Residence, "ring or cache"),
     plain(Key::L, Command::Spacing, "spacing"),
-    plain(Key::A, Command::Adaptive, "levels by pixels"),
+    plain(
+        Key::A,
+        Command::Adaptive,
+        "levels by pixels, distance, curvature",
+    ),
     plain(Key::K, Command::Cull, "culling"),
     plain(Key::Z, Command::Freeze, "freeze the camera that cuts"),
     plain(Key::S, Command::Split, "split with another method"),
@@ -272,6 +279,9 @@ pub const SHADINGS: &[(Shading, &str)] = &[
 /// All back-ends.
 pub const BACKENDS: [Backend; 3] = [Backend::Tessellator, Backend::Pattern, Backend::Geometry];
 
+/// What can be left out, one after the other, by the names of `--cull`.
+const CULLINGS: [&str; 6] = ["none", "frustum", "back", "small", "all", "front"];
+
 /// All schemes that can be chosen, and the model's own.
 pub const SCHEMES: [Option<Scheme>; 6] = [
     None,
@@ -314,13 +324,16 @@ impl Viewer {
                 cutting.spacing = next(&[Spacing::Equal, Spacing::FractionalEven], cutting.spacing);
             }
             Command::Adaptive => {
-                cutting.pixels = match cutting.pixels {
-                    None => Some(8.0),
-                    Some(_) => None,
-                };
+                let same = |a: &Adaptive, b: &Adaptive| discriminant(a) == discriminant(b);
+                let all = Adaptive::ALL;
+                let at = cutting
+                    .adaptive
+                    .and_then(|by| all.iter().position(|a| same(a, &by)));
+                cutting.adaptive = all.get(at.map_or(0, |at| at + 1)).copied();
             }
             Command::Cull => {
-                cutting.cull = next(&[Cull::None, Cull::Back, Cull::Front], cutting.cull);
+                let all = CULLINGS.map(|name| name.parse().unwrap_or_default());
+                cutting.culling = next(&all, cutting.culling);
             }
             Command::Amplify => cutting.amplify ^= true,
             other => self.obey_more(other),

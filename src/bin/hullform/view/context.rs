@@ -1,22 +1,24 @@
 //! What all surfaces of the window share on the device: layouts, pipelines with their cache on disk, and how a model gets there.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
 
 use hullform::ash::vk;
 use hullform::gpu::shaders::Modules;
 use hullform::gpu::{
-    Backend, CachePipelines, DrawList, Layout, Pipelines, Residence, Slots, SurfaceOptions,
-    TessellatedSurface,
+    Backend, CachePipelines, DecidePipeline, Decides, DrawList, Layout, Pipelines, Residence,
+    Slots, SurfaceOptions, TessellatedSurface,
 };
 use hullform::host::{Device, OffscreenTarget, Owned, Style};
 use hullform::mesh::{ControlMesh, Model};
-use hullform::method::{MethodOptions, Prepared, method, prepare_by_default_with};
+use hullform::method::{
+    Editable, MethodOptions, Prepared, method, method_by_default, prepare_by_default_with,
+};
 use hullform::plan::Database;
 use hullform::{Error, Result};
 
 use super::kept::{Kept, key};
-pub use super::kept::{Key, Made, Shaders};
+pub use super::kept::{Key, Made as Pipes, Shaders};
 use crate::gpu::Gpu;
 use crate::options::Global;
 
@@ -31,11 +33,20 @@ pub struct Recipe {
     pub residence: Residence,
     /// Whether vertices with an odd number of bits are moved, so that cracks show.
     pub amplify: bool,
+    /// Who decides about patches, where it is not edited in place: then the host does.
+    pub decides: Decides,
+    /// Whether it is edited in place, where its method can; control points live in the ring then.
+    pub live: bool,
 }
+
+/// Vertices of a batch on devices that are software, so that a frame draws a part of a scene; what others do at once.
+const BATCH: [u32; 2] = [4096, 1 << 18];
 
 /// What surfaces share. Fields are dropped in this order.
 pub struct Context {
     kept: Mutex<Kept>,
+    /// Decides about patches, once something is drawn of which the device does.
+    deciding: OnceLock<Owned<DecidePipeline>>,
     layout: Owned<Layout>,
     /// A picture like those that are drawn into, which pipelines are made for: it stays when the window changes.
     mould: OffscreenTarget,
@@ -59,6 +70,20 @@ pub struct Drawn {
     pub seconds: [f64; 2],
     /// Why methods that come before the one that did it refused.
     pub refusals: Vec<String>,
+    /// How far larger buffers are, which an edit made.
+    pub growth: Growth,
+}
+
+/// How far buffers are that were made larger.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Growth {
+    /// There are none.
+    #[default]
+    Done,
+    /// They were made.
+    Made,
+    /// What is in them was recorded.
+    Recorded,
 }
 
 impl Drawn {
@@ -76,6 +101,7 @@ impl Context {
         let layout = unsafe { Layout::new(device.raw(), device.enabled()) }?;
         Ok(Context {
             kept: Mutex::new(Kept::new()),
+            deciding: OnceLock::new(),
             // SAFETY: the layout was just made by this device.
             layout: unsafe { Owned::new(device, layout) },
             mould: OffscreenTarget::with_format(device, 1, 1, samples, format)?,
@@ -99,20 +125,44 @@ impl Context {
         &self.mould
     }
 
-    /// Brings a model to the device that was prepared. Takes its time: for workers.
-    pub fn place(&self, model: &Model, prepared: Readied, recipe: Recipe) -> Result<Drawn> {
+    /// Brings a model to the device that was prepared; with what it is edited by, where it is. Takes its time: for workers.
+    pub fn place(
+        &self,
+        model: &Model,
+        readied: Readied,
+        recipe: Recipe,
+    ) -> Result<(Drawn, Option<Editable>)> {
         let started = Instant::now();
         let _span = tracing::debug_span!("upload").entered();
-        let mut drawn = self.upload(model, prepared.prepared, recipe)?;
-        drawn.seconds = [prepared.seconds, started.elapsed().as_secs_f64()];
-        drawn.refusals = prepared.refusals;
-        Ok(drawn)
+        let Readied {
+            made,
+            seconds,
+            refusals,
+        } = readied;
+        let mut drawn = self.upload(model, &made, recipe)?;
+        drawn.seconds = [seconds, started.elapsed().as_secs_f64()];
+        drawn.refusals = refusals;
+        let editable = match made {
+            Made::Editable(editable) => Some(*editable),
+            Made::Plain(_) => None,
+        };
+        Ok((drawn, editable))
     }
 
-    fn upload(&self, model: &Model, prepared: Prepared, recipe: Recipe) -> Result<Drawn> {
+    fn upload(&self, model: &Model, made: &Made, recipe: Recipe) -> Result<Drawn> {
+        let (residence, decides) = match made {
+            Made::Editable(_) => (Residence::Ring, Decides::Host),
+            Made::Plain(_) => (recipe.residence, recipe.decides),
+        };
+        let [software, hardware] = BATCH;
         let options = SurfaceOptions {
             backend: recipe.backend,
-            residence: recipe.residence,
+            residence,
+            decides,
+            batch_vertices: match self.device().info().is_software() {
+                true => software,
+                false => hardware,
+            },
             ring_bytes: self.global.ring_bytes,
             slots: Slots::Host,
             greatest_level: greatest_level(recipe.backend),
@@ -121,17 +171,42 @@ impl Context {
             amplify_cracks: recipe.amplify,
             ..SurfaceOptions::default()
         };
+        if decides == Decides::Device {
+            self.make_deciding()?;
+        }
         let (device, layout) = (self.device(), self.layout());
         let workarounds = &self.gpu.workarounds;
         // SAFETY: all of one live device, which was opened with every feature that `Support` asks for.
         let surface = unsafe {
             let memory = &mut device.memory();
             let raw = device.raw();
-            TessellatedSurface::new(raw, memory, layout, model, prepared, workarounds, options)
+            match made {
+                Made::Plain(prepared) => {
+                    let prepared = (**prepared).clone();
+                    TessellatedSurface::new(
+                        raw,
+                        memory,
+                        layout,
+                        model,
+                        prepared,
+                        workarounds,
+                        options,
+                    )
+                }
+                Made::Editable(editable) => TessellatedSurface::editable(
+                    raw,
+                    memory,
+                    layout,
+                    model,
+                    editable,
+                    workarounds,
+                    options,
+                ),
+            }
         }?;
         // SAFETY: it was just made by this device.
         let mut surface = unsafe { Owned::new(device, surface) };
-        let made = (recipe.residence == Residence::Cache).then(|| {
+        let filled = (residence == Residence::Cache).then(|| {
             let (cache, prepared) = (self.gpu.pipeline_cache(), surface.prepared());
             let from = self.shaders().modules;
             // SAFETY: all of one live device; the modules are ours, or what somebody makes of them to look at.
@@ -139,7 +214,7 @@ impl Context {
         });
         // SAFETY: as above.
         let own = |pipelines| unsafe { Owned::new(device, pipelines) };
-        let cache = made.transpose()?.map(own);
+        let cache = filled.transpose()?.map(own);
         device.submit(|cmd| {
             // SAFETY: recording on the device that made everything, outside of a render pass.
             unsafe { surface.cmd_upload(device.raw(), cmd) };
@@ -154,7 +229,25 @@ impl Context {
             vertices: 0,
             seconds: [0.0; 2],
             refusals: Vec::new(),
+            growth: Growth::Done,
         })
+    }
+
+    /// What decides about patches, if it was made.
+    pub fn deciding(&self) -> Option<&DecidePipeline> {
+        self.deciding.get().map(|pipeline| &**pipeline)
+    }
+
+    /// Makes that, unless it is there.
+    fn make_deciding(&self) -> Result<()> {
+        if self.deciding.get().is_none() {
+            let (device, cache) = (self.device(), self.gpu.pipeline_cache());
+            // SAFETY: all of one live device.
+            let made = unsafe { DecidePipeline::new(device.raw(), &self.layout, cache) }?;
+            // SAFETY: it was just made by this device. Another worker may have been quicker.
+            let _ = self.deciding.set(unsafe { Owned::new(device, made) });
+        }
+        Ok(())
     }
 
     /// The shaders that everything is made of.
@@ -174,7 +267,7 @@ impl Context {
     }
 
     /// Gives up pipelines that have not been drawn with for a while. Not while a frame is drawn.
-    pub fn give_up_but(&self, wanted: &[Key]) -> Made {
+    pub fn give_up_but(&self, wanted: &[Key]) -> Pipes {
         self.kept().give_up_but(wanted)
     }
 
@@ -196,9 +289,9 @@ impl Context {
 
     /// Makes pipelines of other shaders; those that nothing changes of stay what they are. Takes its time: for workers.
     #[cfg(feature = "shaderc")]
-    pub fn remake(&self, wanted: &[(Prepared, Style)], from: &dyn Modules) -> Result<Made> {
+    pub fn remake(&self, wanted: &[(Prepared, Style)], from: &dyn Modules) -> Result<Pipes> {
         let of = self.shaders().modules;
-        let mut made = Made::new();
+        let mut made = Pipes::new();
         for (prepared, style) in wanted {
             let key = key(prepared, *style);
             let names = Pipelines::modules(prepared, &style.options(&self.mould));
@@ -214,7 +307,7 @@ impl Context {
 
     /// Goes over to other shaders, with the pipelines that have been made of them; the old ones come back. Not while a frame is drawn.
     #[cfg(feature = "shaderc")]
-    pub fn exchange(&self, modules: Arc<dyn Modules + Send + Sync>, pipelines: Made) -> Made {
+    pub fn exchange(&self, modules: Arc<dyn Modules + Send + Sync>, pipelines: Pipes) -> Pipes {
         self.kept().exchange(modules, pipelines)
     }
 
@@ -256,25 +349,50 @@ impl Context {
 
 /// What a method made of a model, with what it took.
 pub struct Readied {
-    prepared: Prepared,
+    made: Made,
     /// Seconds.
     seconds: f64,
     /// Why methods that come before the one that did it refused.
     refusals: Vec<String>,
 }
 
+enum Made {
+    Plain(Box<Prepared>),
+    Editable(Box<Editable>),
+}
+
 impl Readied {
-    /// Prepares a model. Takes its time, and needs no device: for workers.
-    pub fn new(model: &Model, by: Option<&'static str>, database: &Database) -> Result<Readied> {
+    /// Prepares a model as a recipe says. Takes its time, and needs no device: for workers.
+    pub fn new(model: &Model, recipe: Recipe, database: &Database) -> Result<Readied> {
         let started = Instant::now();
         let _span = tracing::debug_span!("prepare").entered();
-        let (prepared, refusals) = prepare(model, by, database)?;
+        let (made, refusals) = match recipe.live.then(|| editable(model, recipe, database)) {
+            Some(Ok(Some(editable))) => (Made::Editable(Box::new(editable)), Vec::new()),
+            // What refuses is told by the one that is not edited.
+            _ => {
+                let (prepared, refusals) = prepare(model, recipe.method, database)?;
+                (Made::Plain(Box::new(prepared)), refusals)
+            }
+        };
         Ok(Readied {
-            prepared,
+            made,
             seconds: started.elapsed().as_secs_f64(),
             refusals: refusals.iter().map(ToString::to_string).collect(),
         })
     }
+}
+
+/// Prepares a model to be edited in place; None where its method cannot.
+fn editable(model: &Model, recipe: Recipe, database: &Database) -> Result<Option<Editable>> {
+    let method = match recipe.method {
+        Some(name) => method(name)?,
+        None => method_by_default(model),
+    };
+    if !method.edits_in_place() {
+        return Ok(None);
+    }
+    let options = MethodOptions::default();
+    method.prepare_editable(model, options, database).map(Some)
 }
 
 /// Prepares a model by a method, or by the one that draws its limit or comes near, with the plans of a database; and why those before that one refused.

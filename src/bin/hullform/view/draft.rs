@@ -54,6 +54,11 @@ impl Draft {
         }
     }
 
+    /// How many faces it has.
+    pub fn face_count(&self) -> usize {
+        self.base.face_count()
+    }
+
     /// As a control mesh.
     ///
     /// # Errors

@@ -12,6 +12,7 @@ mod folder;
 mod glsl;
 mod haste;
 mod kept;
+mod live;
 mod log;
 mod notices;
 mod orbit;

@@ -12,6 +12,8 @@ use crate::output::picture::to_linear;
 
 /// Towards the eye, in depths: over what lies at the same place.
 const BEFORE: f64 = 4e-4;
+/// The farthest depth of a line: before the background.
+const FARTHEST: f64 = 1.0 - 1e-6;
 /// The nearest that a line is drawn before the eye, as a share of the farthest end's way.
 const NEAR: f64 = 1e-3;
 /// The colour of edges without a crease.
@@ -144,6 +146,12 @@ impl Pen<'_> {
         for (a, b) in edges.filter(|(a, b)| a != b) {
             self.line([corner(a), corner(b)], 1.6, FROZEN);
         }
+        // From where it looks, where that is a place.
+        let eye = back * DVec4::Z;
+        if eye.w.abs() > 1e-9 {
+            let eye = eye.truncate() / eye.w;
+            (0..4).for_each(|i| self.line([eye, corner(i)], 1.0, FROZEN));
+        }
     }
 
     /// A line between two points, without what lies behind the eye.
@@ -178,8 +186,9 @@ impl Pen<'_> {
     fn quad(&mut self, corners: [(DVec4, DVec2); 4], [r, g, b]: [f32; 3]) {
         let first = self.overlay.vertices.len() as u32;
         for (clip, off) in corners {
-            let moved =
-                clip + (off * clip.w).extend(0.0).extend(0.0) - DVec4::Z * (BEFORE * clip.w);
+            let mut moved = clip + (off * clip.w).extend(0.0).extend(0.0);
+            // What lies nearer or farther than all surfaces is seen all the same.
+            moved.z = (moved.z - BEFORE * clip.w).clamp(0.0, FARTHEST * clip.w);
             self.overlay.vertices.push(ColouredVertex {
                 clip: moved.as_vec4().to_array(),
                 colour: [r, g, b, 1.0],

@@ -1,6 +1,7 @@
 //! The panels around the scene, and what the mouse does in it.
 
 mod edits;
+mod legend;
 mod looks;
 mod readings;
 mod scene;
@@ -29,6 +30,8 @@ pub struct Status<'a> {
     pub probe: Option<&'a super::probe::Found>,
     /// What is wrong with the shaders' text.
     pub shaders: Option<&'a str>,
+    /// The methods by which the first model is drawn, a side.
+    pub methods: Vec<&'static str>,
     /// The scale of the map that is shown.
     pub scale: Option<super::errors::Legend>,
 }

@@ -22,6 +22,18 @@ pub struct Wanted {
     pub recipes: Vec<Recipe>,
 }
 
+impl Wanted {
+    /// Whether an edit leads from another to this.
+    pub fn is_edit_of(&self, other: &Wanted) -> bool {
+        let version = [self.version[0], other.version[1]];
+        let before = Wanted {
+            version,
+            ..self.clone()
+        };
+        before == *other && self != other
+    }
+}
+
 /// A model of the scene.
 pub struct Part {
     number: u64,

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use hullform::gpu::Decides;
 use hullform::mesh::Model;
 use hullform::{Error, Result};
 
 use super::context::{Context, under_scheme};
 use super::draft::Draft;
-use super::viewer::Viewer;
+use super::viewer::{Culling, Viewer};
 use crate::options::{Global, Shape, Standpoint, Triangulate};
 use crate::output::{self, Contents, png};
 use crate::{Arguments, Command, render};
@@ -31,12 +32,12 @@ pub fn words(viewer: &Viewer, shape: &Shape, global: &Global, file: &Path) -> Ve
     words.push(format!("--spacing={}", cutting.spacing.name()));
     words.push(format!("--backend={}", cutting.backend.name()));
     words.push(format!("--residence={}", cutting.residence.name()));
-    words.extend(
-        cutting
-            .pixels
-            .map(|pixels| format!("--adaptive=screen:{pixels}")),
-    );
-    words.push(format!("--cull={}", cutting.cull.name()));
+    words.extend(cutting.adaptive.map(|by| format!("--adaptive={by}")));
+    let culling = Culling {
+        triangles: cutting.culling.triangles,
+        ..viewer.wanted().culling
+    };
+    words.push(format!("--cull={culling}"));
     words.extend(cutting.amplify.then(|| "--amplify-cracks".into()));
     let shading = look.shading.to_possible_value();
     words.extend(shading.map(|shading| format!("--shading={}", shading.get_name())));
@@ -56,7 +57,7 @@ pub fn words(viewer: &Viewer, shape: &Shape, global: &Global, file: &Path) -> Ve
             .map(|device| format!("--device={device}")),
     );
     words.extend(global.no_workarounds.then(|| "--no-workarounds".into()));
-    words.push("--slots=host".into());
+    words.extend((cutting.decides() == Decides::Host).then(|| "--slots=host".into()));
     words.push(format!("--ring-bytes={}", global.ring_bytes));
     words
 }
@@ -76,7 +77,7 @@ pub fn left_out(viewer: &Viewer) -> Vec<&'static str> {
         (viewer.compare.map.is_some(), "the map of errors"),
         (viewer.recipes().len() > 1, "the other method"),
         (
-            viewer.frozen.is_some() && viewer.cutting.pixels.is_some(),
+            viewer.frozen.is_some() && viewer.wanted().is_anything(),
             "the frozen camera",
         ),
         (viewer.deform.kind != super::deform::Kind::None, "motion"),
@@ -158,13 +159,14 @@ pub fn swizzled(bytes: &[u8], format: hullform::ash::vk::Format) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::adaptive::Adaptive;
 
     #[test]
     fn the_command_line_is_one_that_render_takes_and_shells_read() {
         let mut viewer = Viewer::default();
         viewer.open([Some(PathBuf::from("a b's.obj"))]);
-        viewer.cutting.pixels = Some(6.5);
-        viewer.cutting.amplify = true;
+        viewer.cutting.adaptive = Some(Adaptive::Screen(6.5));
+        viewer.cutting.culling.frustum = true;
         viewer.look.wireframe = true;
         viewer.look.displace = -0.05;
         viewer.orbit.target = glam::DVec3::new(-1.0, 1e-7, 3.25);
@@ -183,6 +185,11 @@ mod tests {
             let Ok(Command::Render(arguments)) = parsed.map(|parsed| parsed.command) else {
                 panic!("{words:?}");
             };
+            let (read, shown) = (arguments.wanted(), viewer.wanted());
+            assert_eq!(
+                (read.adaptive, read.culling),
+                (shown.adaptive, shown.culling)
+            );
             assert_eq!(arguments.eye(), Some(viewer.orbit.eye()));
             assert!(line(&words).contains(r"'a b'\''s.obj'"));
         }

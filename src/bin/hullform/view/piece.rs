@@ -21,7 +21,15 @@ pub struct Piece {
 
 impl Piece {
     /// That of (u, v) of a ptex face; None where no patch draws it.
-    pub fn new(prepared: &Prepared, list: &DrawList, face: u32, uv: [f32; 2]) -> Option<Piece> {
+    ///
+    /// `decided` are the levels of a pass's patch where the device has decided about them.
+    pub fn new(
+        prepared: &Prepared,
+        list: &DrawList,
+        decided: impl Fn(usize, usize) -> Option<Levels>,
+        face: u32,
+        uv: [f32; 2],
+    ) -> Option<Piece> {
         let passes = prepared.passes.iter().enumerate();
         let mut all = passes.flat_map(|(pass, own)| {
             let patches = own.patches.iter().enumerate();
@@ -34,7 +42,7 @@ impl Piece {
         Some(Piece {
             cell: own.cell(number, Vec2::from(at)),
             planned: prepared.plans.is_some(),
-            levels: list.levels(prepared, pass, number as u32),
+            levels: decided(pass, number).or_else(|| list.levels(prepared, pass, number as u32)),
         })
     }
 
@@ -110,7 +118,8 @@ mod tests {
                 let list = DrawList::new(&prepared, &options, None, cut, None).expect(name);
                 let patches = prepared.passes.iter().flat_map(|pass| &pass.patches);
                 for face in patches.map(|patch| patch.ptex) {
-                    let piece = Piece::new(&prepared, &list, face, [0.25, 0.125]).expect(name);
+                    let piece =
+                        Piece::new(&prepared, &list, |_, _| None, face, [0.25, 0.125]).expect(name);
                     assert!(piece.levels.is_some_and(|levels| levels.inside >= 1.0));
                     assert!(prepared.plans.is_some() || piece.cell.is_none());
                     match piece.cell {

@@ -18,19 +18,21 @@ use std::time::{Duration, Instant};
 
 use hullform::Result;
 use hullform::host::{Shown, WindowSurface};
-use hullform::mesh::{ControlMesh, Model};
+use hullform::mesh::ControlMesh;
+use hullform::method::Update;
 use hullform::plan::Database;
 
 use super::canvas::Canvas;
 use super::clipboard::Clipboard;
-use super::context::{Context, Drawn, Key};
+use super::context::{Context, Key};
 use super::errors::{Measured, Subject};
 use super::haste::Haste;
+use super::live::Live;
 use super::panels;
 use super::part::Wanted;
 use super::probe::Found;
 use super::readings::Readings;
-use super::stage::Stage;
+use super::stage::{Built, Stage};
 use super::viewer::{Viewer, Wish};
 use super::watch::Watch;
 use super::workers::{Wake, Workers};
@@ -44,7 +46,9 @@ pub enum Done {
     /// A mesh was read.
     Read(u64, Result<ControlMesh>),
     /// A part was brought to the device.
-    Built(u64, Wanted, Result<(Arc<Model>, Vec<Drawn>)>),
+    Built(u64, Wanted, Result<Built>),
+    /// What was prepared of a part was brought up to an edit.
+    Edited(u64, Wanted, Result<(Live, Vec<Update>)>),
     /// Pipelines were made.
     Piped(Key, Result<()>),
     /// A surface was captured.
@@ -66,6 +70,8 @@ pub enum Done {
 struct Running {
     read: Vec<u64>,
     built: Vec<(u64, Wanted)>,
+    /// By part, from what its surfaces are brought up to an edit.
+    edited: Vec<(u64, Wanted)>,
     piped: Vec<Key>,
     measured: Option<Subject>,
     compared: Option<Arc<Measured>>,
@@ -105,9 +111,11 @@ pub struct Program {
     live: shaders::Live,
     began: Instant,
     haste: Haste,
-    /// Seconds for which the window waited until it could hand over the last scene.
-    handed_over: f64,
-    /// Whether the scene has changed and is not drawn yet.
+    /// What was brought while a scene was being drawn that it would change.
+    waiting: Vec<Done>,
+    /// Whether a picture of the window is to be taken, once it shows the full scene.
+    shooting: bool,
+    /// Whether the scene has changed and nothing is drawn of that yet.
     undrawn: bool,
     /// Whether a measurement that is asked for waits until nobody is at work.
     unmeasured: bool,
@@ -126,7 +134,8 @@ pub struct Program {
 impl Running {
     /// Whether nothing is prepared, and no pipeline made.
     fn is_idle(&self) -> bool {
-        self.read.is_empty() && self.built.is_empty() && self.piped.is_empty()
+        let builds = !(self.built.is_empty() && self.edited.is_empty());
+        self.read.is_empty() && !builds && self.piped.is_empty()
     }
 }
 
@@ -166,6 +175,7 @@ impl Program {
             watch.look_into(folder);
         }
         let context = Arc::new(context);
+        let is_software = context.device().info().is_software();
         Ok(Program {
             stage: Stage::new(&context)?,
             workers: Workers::new(context.clone(), wake),
@@ -184,8 +194,9 @@ impl Program {
             saved: None,
             saved_pipelines: 0,
             began: Instant::now(),
-            haste: Haste::default(),
-            handed_over: 0.0,
+            haste: Haste::new(is_software),
+            waiting: Vec::new(),
+            shooting: false,
             undrawn: false,
             unmeasured: false,
             anew: true,
@@ -238,6 +249,8 @@ impl Program {
             && running.measured.is_none()
             && running.saved == 0
             && !self.unmeasured
+            && !self.shooting
+            && self.waiting.is_empty()
             && self.is_whole()
             && !self.live.running
             && (!self.live.due || self.stage.parts.is_empty())
@@ -245,8 +258,7 @@ impl Program {
 
     /// Goes along with a window of this size.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
-        self.fresh = true;
-        self.anew = true;
+        self.begins_anew();
         self.canvas.resize(size)
     }
 
@@ -256,9 +268,15 @@ impl Program {
         size: [u32; 2],
         surface: impl FnOnce() -> Result<WindowSurface>,
     ) -> Result<()> {
-        self.fresh = true;
-        self.anew = true;
+        self.begins_anew();
         self.canvas.renew(size, surface)
+    }
+
+    /// Has nothing of a picture yet.
+    fn begins_anew(&mut self) {
+        self.stage.abandon();
+        (self.fresh, self.anew) = (true, true);
+        self.shooting |= self.canvas.is_shooting();
     }
 
     /// Ends a program whose device was lost: what it showed.
@@ -295,13 +313,7 @@ impl Program {
             match wish {
                 Wish::Probe(at) => self.probe = Some(at),
                 Wish::Quit => return Ok(true),
-                Wish::Screenshot => {
-                    if !self.canvas.shoot()? {
-                        self.viewer
-                            .notices
-                            .warn("the display does not give its pictures back");
-                    }
-                }
+                Wish::Screenshot => self.shooting = true,
                 Wish::Render => self.render()?,
                 Wish::CopyCommand => self.copy(),
                 Wish::Save => self.save()?,

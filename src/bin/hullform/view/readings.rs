@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::stage::Cost;
+use hullform::gpu::Outcome;
 
 /// How many frames graphs go back.
 const FRAMES: usize = 90;
@@ -43,6 +44,8 @@ pub struct Readings {
     pub host: Series,
     /// What the last scene cost.
     pub cost: Cost,
+    /// What the device decided for that, where it does.
+    pub outcome: Option<Outcome>,
     /// Frames that were shown, and scenes that were drawn.
     pub frames: [u64; 2],
     /// Of the models: faces, patches, plans, bytes.

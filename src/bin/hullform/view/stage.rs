@@ -1,26 +1,28 @@
 //! What is on the device of the scene, and how a frame draws it.
 
 mod drawn;
+mod scene;
 
 use std::sync::Arc;
-use std::time::Instant;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{Cut, DrawList, Fill, SurfaceOptions, View};
-use hullform::host::{ColouredTriangles, ColouredVertex, OffscreenTarget, Style, TimestampQuery};
+use hullform::gpu::{self, Cut, DrawList, Fill, SurfaceOptions, View};
+use hullform::host::{ColouredTriangles, ColouredVertex, Style, TimestampQuery};
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Displacement, Prepared};
+use hullform::method::{DepthTags, Displacement, Prepared, Update};
 
 use super::context::{Context, Drawn, Key};
+use super::live::Live;
 use super::overlay::Overlay;
 use super::part::{Part, Wanted};
 use super::viewer::{Beside, Viewer};
 use super::viewport::Area;
-use crate::adaptive::Seen;
+use crate::adaptive::{Adaptive, Seen};
 use crate::eye::Eye;
 use crate::render;
+use scene::Scene;
 
 /// A part on the device.
 pub struct Staged {
@@ -32,17 +34,29 @@ pub struct Staged {
     pub wanted: Wanted,
     /// A surface a recipe.
     pub sides: Vec<Drawn>,
+    /// By what it is edited in place; None where it is not, and while a worker has it.
+    pub live: Option<Live>,
     /// Which of the part's moves its surfaces have.
     moves: u64,
     /// For what the lists were decided.
     decided: Option<Decision>,
 }
 
+/// A part as workers bring it to the device.
+pub struct Built {
+    /// The model.
+    pub model: Arc<Model>,
+    /// A surface a recipe.
+    pub sides: Vec<Drawn>,
+    /// By what it is edited in place, where it is.
+    pub live: Option<Live>,
+}
+
 /// What lists depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Decision {
     cut: Cut,
-    tags: Option<(super::orbit::Orbit, f32, u64, [u32; 2])>,
+    tags: Option<(super::orbit::Orbit, Adaptive, u64, [u32; 2])>,
 }
 
 /// A side of the picture: where it is, and what is drawn there.
@@ -64,6 +78,10 @@ pub struct Stage {
     maps: Vec<ColouredTriangles>,
     timer: Option<TimestampQuery>,
     timed: bool,
+    /// How many vertices the maps and the lines over all have.
+    flat: [usize; 3],
+    /// What is being drawn, until it is whole.
+    scene: Option<Scene>,
 }
 
 /// What a frame took.
@@ -83,15 +101,27 @@ pub struct Cost {
 
 impl Staged {
     /// A part that has been brought to the device, as it was when it was read.
-    pub fn new(number: u64, model: Arc<Model>, wanted: Wanted, sides: Vec<Drawn>) -> Staged {
+    pub fn new(number: u64, wanted: Wanted, built: Built) -> Staged {
+        let Built { model, sides, live } = built;
         Staged {
             number,
             model,
             wanted,
             sides,
+            live,
             moves: 0,
             decided: None,
         }
+    }
+
+    /// Brings its surfaces up to an edit: the next frame draws that. Nothing is drawn at this time.
+    pub fn edit(&mut self, live: Live, updates: &[Update], context: &Context) -> Result<()> {
+        for (number, (drawn, update)) in self.sides.iter_mut().zip(updates).enumerate() {
+            drawn.edit(live.side(number), update, context)?;
+        }
+        self.decided = None;
+        self.live = Some(live);
+        Ok(())
     }
 
     /// The vertices that a side is drawn with.
@@ -111,10 +141,23 @@ impl Stage {
             maps: vec![map()?, map()?],
             timer: TimestampQuery::new(device)?,
             timed: false,
+            flat: [0; 3],
+            scene: None,
         })
     }
 
-    /// The device's seconds for the scene that was drawn last. Once it is done.
+    /// What the device decided for the scene that was drawn last, once it is done; None where the host decides.
+    pub fn outcome(&self) -> Option<gpu::Outcome> {
+        let mut sum = None;
+        for drawn in self.parts.iter().flat_map(|part| &part.sides) {
+            // What has not been drawn yet has not been decided about.
+            let list = drawn.list.as_ref().filter(|_| drawn.is_decided_there())?;
+            *sum.get_or_insert_default() += drawn.surface.outcome(list, 0..1).ok()?;
+        }
+        sum
+    }
+
+    /// The device's seconds for what was drawn last of a scene. Once it is done.
     pub fn device_seconds(&mut self) -> Option<f64> {
         let timed = std::mem::take(&mut self.timed);
         let timer = self.timer.as_ref().filter(|_| timed)?;
@@ -154,6 +197,7 @@ impl Stage {
     /// Takes a part in; what there was of it comes back.
     pub fn put(&mut self, staged: Staged) -> Vec<Staged> {
         let same = |other: &mut Staged| other.number == staged.number;
+        self.scene = None;
         let old = self.parts.extract_if(.., same).collect();
         self.parts.push(staged);
         self.parts.sort_by_key(|staged| staged.number);
@@ -163,7 +207,11 @@ impl Stage {
     /// Keeps these parts alone; the others come back.
     pub fn keep(&mut self, numbers: &[u64]) -> Vec<Staged> {
         let gone = |staged: &mut Staged| !numbers.contains(&staged.number);
-        self.parts.extract_if(.., gone).collect()
+        let gone: Vec<Staged> = self.parts.extract_if(.., gone).collect();
+        if !gone.is_empty() {
+            self.scene = None;
+        }
+        gone
     }
 
     /// What pipelines must be for to draw everything.
@@ -223,6 +271,8 @@ impl Stage {
             staged.place(part)?;
             staged.decide(viewer, cut, part, context)?;
         }
+        let map = |side: usize| overlay.maps.get(side).map_or(0, |map| map.0.len());
+        self.flat = [map(0), map(1), overlay.vertices.len()];
         let maps = self.maps.iter_mut().zip(&overlay.maps);
         // SAFETY: nothing is drawn at this time, which the caller has asked the canvas.
         unsafe {
@@ -231,58 +281,6 @@ impl Stage {
             }
             self.overlay.replace(&overlay.vertices, &overlay.triangles)
         }
-    }
-
-    /// Records the scene.
-    pub fn record(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        target: &OffscreenTarget,
-        viewer: &Viewer,
-        context: &Context,
-    ) -> Result<Cost> {
-        let started = Instant::now();
-        let _span = tracing::debug_span!("record").entered();
-        let mut cost = Cost::default();
-        let device = context.device().raw();
-        let sides = Stage::sides(viewer);
-        if let Some(timer) = &self.timer {
-            // SAFETY: recording on this device, outside of a render pass.
-            unsafe { timer.cmd_begin(cmd) };
-        }
-        for part in &mut self.parts {
-            for side in &sides {
-                let view = view(viewer, &part.model, side.viewport);
-                if let Some(drawn) = part.sides.get_mut(side.recipe) {
-                    // SAFETY: as above, on the device that made it.
-                    cost.points += unsafe { drawn.cmd_prepare(cmd, context, view) }?;
-                }
-            }
-        }
-        // SAFETY: as above; each batch is recorded once a round.
-        unsafe {
-            target.begin(cmd, render::CLEAR);
-            for side in &sides {
-                cmd_look(device, cmd, side);
-                if viewer.compare.map.is_some() {
-                    self.maps[side.recipe].cmd_draw(cmd);
-                } else {
-                    for part in &self.parts {
-                        if let Some(drawn) = part.sides.get(side.recipe) {
-                            drawn.cmd_draw(cmd, viewer, context, &mut cost)?;
-                        }
-                    }
-                }
-                self.overlay.cmd_draw(cmd);
-            }
-            target.end(cmd);
-            if let Some(timer) = &self.timer {
-                timer.cmd_end(cmd);
-                self.timed = true;
-            }
-        }
-        cost.host = started.elapsed().as_secs_f64();
-        Ok(cost)
     }
 }
 
@@ -294,16 +292,15 @@ pub fn style(drawn: &Drawn, viewer: &Viewer, fill: Fill) -> Style {
 /// The same of surfaces that are not there yet. Wires are as thin as in `render`'s pictures.
 pub fn style_of(options: SurfaceOptions, viewer: &Viewer, fill: Fill) -> Style {
     Style {
-        cull: viewer.cutting.cull.mode(),
+        cull: viewer.cutting.culling.triangles.mode(),
         line_width: viewer.scale / render::SUPERSAMPLING as f32,
         ..Style::new(options, viewer.cutting.spacing, fill)
     }
 }
 
-/// What is seen of a model.
-fn view(viewer: &Viewer, model: &Model, area: Area) -> View {
+/// What an eye sees of a model.
+fn view(viewer: &Viewer, eye: Eye, model: &Model, area: Area) -> View {
     let placement = model.placement();
-    let eye: Eye = viewer.orbit.eye();
     let seen = eye.view(placement, area.aspect(), viewer.sphere());
     View {
         clip_from_model: seen.clip_from_model.to_cols_array_2d(),
@@ -365,10 +362,10 @@ impl Staged {
     /// Decides levels anew, where what they depend on has changed.
     fn decide(&mut self, viewer: &Viewer, cut: Cut, part: &Part, context: &Context) -> Result<()> {
         let size = [viewer.area.width, viewer.area.height];
-        let tags = |pixels| (viewer.cutting_orbit(), pixels, part.moves(), size);
+        let tags = |by| (viewer.cutting_orbit(), by, part.moves(), size);
         let decision = Decision {
             cut,
-            tags: viewer.cutting.pixels.map(tags),
+            tags: viewer.cutting.adaptive.map(tags),
         };
         let decided = self.decided.as_ref() == Some(&decision);
         if decided && self.sides.iter().all(|drawn| drawn.list.is_some()) {
@@ -377,7 +374,9 @@ impl Staged {
         let tags = self.tags(viewer, cut.level, part)?;
         let device = context.device();
         for drawn in &mut self.sides {
-            let list = drawn.surface.draw_list(cut, tags.as_ref())?;
+            drawn.finish(context);
+            let tags = tags.as_ref().filter(|_| !drawn.is_decided_there());
+            let list = drawn.surface.draw_list(cut, tags)?;
             let memory = &mut device.memory();
             // SAFETY: nothing is drawn at this time; device and memory made the surface.
             unsafe { drawn.surface.write_draws(device.raw(), memory, &list) }?;
@@ -388,30 +387,52 @@ impl Staged {
         Ok(())
     }
 
-    /// A depth for each control vertex, by the camera that cuts.
-    fn tags(&self, viewer: &Viewer, level: f32, part: &Part) -> Result<Option<DepthTags>> {
-        let Some(adaptive) = viewer.cutting.adaptive() else {
-            return Ok(None);
-        };
-        let Some(drawn) = self.sides.first() else {
-            return Ok(None);
-        };
+    /// Control vertices as they are shown, in local units.
+    fn places(&self, part: &Part) -> Vec<Vec3> {
         let placement = self.model.placement();
-        let eye = viewer.cutting_orbit().eye();
-        let view = eye.view(placement, viewer.area.aspect(), viewer.sphere());
-        let seen = Seen {
-            clip_from_model: view.clip_from_model,
-            eye: view.eye,
-            scale: placement.scale,
-            size: [viewer.area.width, viewer.area.height].map(|side| side.max(1) as f32),
-        };
         let places = part.points().iter().map(|&p| placement.local(p).as_vec3());
-        let places: Vec<_> = match part.points().len() == self.model.mesh().vertex_count() {
+        match part.points().len() == self.model.mesh().vertex_count() {
             true => places.collect(),
             false => self.model.positions(),
+        }
+    }
+
+    /// What the device decides about patches in an area of the window.
+    fn decision(&self, viewer: &Viewer, part: &Part, area: Area, a_pixel: u32) -> gpu::Decision {
+        let seen = cutting_eye(viewer, &self.model, area);
+        let decision = viewer.wanted().decision(&self.places(part), seen, a_pixel);
+        gpu::Decision {
+            // The second view is that of the frozen camera.
+            seen_from: viewer.frozen.map(|_| 1),
+            ..decision
+        }
+    }
+
+    /// A depth for each control vertex, by the camera that cuts.
+    fn tags(&self, viewer: &Viewer, level: f32, part: &Part) -> Result<Option<DepthTags>> {
+        let Some(adaptive) = viewer.cutting.adaptive else {
+            return Ok(None);
         };
+        let Some(drawn) = self.sides.iter().find(|drawn| !drawn.is_decided_there()) else {
+            return Ok(None);
+        };
+        let seen = cutting_eye(viewer, &self.model, viewer.area);
+        let places = self.places(part);
         let outline = &drawn.surface.prepared().outline;
         adaptive.tags(outline, &places, level, seen).map(Some)
+    }
+}
+
+/// From where patches are cut in an area of the window.
+fn cutting_eye(viewer: &Viewer, model: &Model, area: Area) -> Seen {
+    let placement = model.placement();
+    let eye = viewer.cutting_orbit().eye();
+    let view = eye.view(placement, area.aspect(), viewer.sphere());
+    Seen {
+        clip_from_model: view.clip_from_model,
+        eye: view.eye,
+        scale: placement.scale,
+        size: [area.width, area.height].map(|side| side.max(1) as f32),
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use hullform::gpu::{Backend, Cut, Residence};
+use hullform::gpu::{Backend, Cut, Decides, Residence};
 use hullform::host::Pacing;
 use hullform::mesh::Scheme;
 use hullform::method::METHODS;
@@ -15,11 +15,12 @@ use super::deform::Deform;
 use super::notices::Notices;
 use super::orbit::Orbit;
 use super::part::Part;
-use super::selection::Selection;
+use super::selection::{Selection, Tool};
 use super::viewport::Area;
 use crate::adaptive::Adaptive;
+use crate::deciding::Wanted;
 use crate::eye::Sphere;
-pub use crate::options::Cull;
+pub use crate::options::{Cull, Culling};
 use crate::render::Shading;
 
 /// What is shown of a surface.
@@ -52,10 +53,10 @@ pub struct Cutting {
     pub spacing: Spacing,
     /// The level, 1..=64.
     pub level: f32,
-    /// Pixels a segment, where levels go by the picture.
-    pub pixels: Option<f32>,
-    /// Which triangles are left out.
-    pub cull: Cull,
+    /// What levels go by, where they differ.
+    pub adaptive: Option<Adaptive>,
+    /// What is left out.
+    pub culling: Culling,
     /// Whether cracks are amplified.
     pub amplify: bool,
 }
@@ -69,9 +70,31 @@ impl Cutting {
         }
     }
 
-    /// What depth tags go by.
-    pub fn adaptive(&self) -> Option<Adaptive> {
-        self.pixels.map(Adaptive::Screen)
+    /// Whether the device can decide about patches; else levels go by depth tags, and patches are drawn wherever they are.
+    pub fn may_decide(&self) -> bool {
+        self.backend == Backend::Tessellator && self.residence == Residence::Cache
+    }
+
+    /// What is decided about patches.
+    pub fn wanted(&self) -> Wanted {
+        Wanted {
+            adaptive: self.adaptive,
+            culling: match self.may_decide() {
+                true => self.culling,
+                false => Culling {
+                    triangles: self.culling.triangles,
+                    ..Culling::default()
+                },
+            },
+        }
+    }
+
+    /// Who decides.
+    pub fn decides(&self) -> Decides {
+        match self.may_decide() && self.wanted().is_anything() {
+            true => Decides::Device,
+            false => Decides::Host,
+        }
     }
 }
 
@@ -201,8 +224,8 @@ impl Default for Viewer {
                 residence: Residence::Cache,
                 spacing: Spacing::FractionalEven,
                 level: 8.0,
-                pixels: None,
-                cull: Cull::None,
+                adaptive: None,
+                culling: Culling::default(),
                 amplify: false,
             },
             compare: Compare {
@@ -282,11 +305,16 @@ impl Viewer {
 
     /// How each side is prepared.
     pub fn recipes(&self) -> Vec<Recipe> {
-        let recipe = |method| Recipe {
+        // What is being edited is edited in place, where the method can; nobody knows yet which one draws a model by itself.
+        let edits = self.selection.tool != Tool::Look;
+        let in_place = |name: &str| METHODS.iter().any(|m| m.name == name && m.edits_in_place());
+        let recipe = |method: Option<&'static str>| Recipe {
+            live: edits && method.is_none_or(in_place),
             method,
             backend: self.cutting.backend,
             residence: self.cutting.residence,
             amplify: self.cutting.amplify,
+            decides: self.cutting.decides(),
         };
         let mut all = vec![recipe(self.cutting.method)];
         if self.compare.beside != Beside::Alone {
@@ -315,6 +343,24 @@ impl Viewer {
         orbit.fit(self.points(), self.area.aspect());
         self.orbit = orbit;
         self.fit_pending = false;
+    }
+
+    /// What is decided about patches: nothing that lines or moved vertices may show is left out.
+    pub fn wanted(&self) -> Wanted {
+        let wanted = self.cutting.wanted();
+        let (moved, lines) = (self.cutting.amplify, self.look.wireframe);
+        let culling = wanted.culling;
+        Wanted {
+            culling: Culling {
+                triangles: match moved {
+                    true => Cull::None,
+                    false => culling.triangles,
+                },
+                frustum: culling.frustum && !moved,
+                small: culling.small && !moved && !lines,
+            },
+            ..wanted
+        }
     }
 
     /// The camera by which surfaces are cut.

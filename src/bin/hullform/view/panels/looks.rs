@@ -1,5 +1,7 @@
 //! What is shown, how it is cut, and what it is compared with.
 
+use std::mem::discriminant;
+
 use egui::{Slider, Ui};
 use hullform::gpu::{Backend, Residence};
 use hullform::tessellation::Spacing;
@@ -7,8 +9,9 @@ use hullform::tessellation::Spacing;
 use super::super::command::{BACKENDS, Command, SCHEMES, SHADINGS, methods};
 use super::super::context::greatest_level;
 use super::super::orbit::Preset;
-use super::super::viewer::{Beside, Cull, ErrorKind, Intent, Viewer};
+use super::super::viewer::{Beside, Cull, Cutting, ErrorKind, Intent, Viewer};
 use super::{choice, heading, row};
+use crate::adaptive::Adaptive;
 
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
     files(ui, viewer);
@@ -106,18 +109,8 @@ fn cut(ui: &mut Ui, viewer: &mut Viewer) {
         ui.add(slider.max_decimals(2).smart_aim(false))
     });
     viewer.places.insert("level", level.rect);
-    row(ui, "adaptive", |ui| {
-        let mut on = cutting.pixels.is_some();
-        ui.checkbox(&mut on, "");
-        cutting.pixels = on.then(|| cutting.pixels.unwrap_or(8.0));
-        if let Some(pixels) = &mut cutting.pixels {
-            let slider = Slider::new(pixels, 1.0..=64.0).logarithmic(true);
-            ui.spacing_mut().slider_width = 70.0;
-            ui.add(slider.fixed_decimals(0).suffix(" px"));
-        }
-    });
-    let all = [Cull::None, Cull::Back, Cull::Front].map(|cull| (cull, cull.name().to_string()));
-    choice(ui, "culling", &mut cutting.cull, &all);
+    levels(ui, cutting);
+    culling(ui, cutting);
     let mut frozen = viewer.frozen.is_some();
     ui.horizontal_wrapped(|ui| {
         ui.toggle_value(&mut frozen, "freeze")
@@ -127,6 +120,78 @@ fn cut(ui: &mut Ui, viewer: &mut Viewer) {
     if frozen != viewer.frozen.is_some() {
         viewer.obey(Command::Freeze);
     }
+}
+
+/// What levels go by.
+fn levels(ui: &mut Ui, cutting: &mut Cutting) {
+    let [screen, distance, curvature] = Adaptive::ALL.map(|by| match cutting.adaptive {
+        Some(own) if discriminant(&own) == discriminant(&by) => own,
+        _ => by,
+    });
+    let all = [
+        (None, "none".to_string()),
+        (Some(screen), "by pixels".to_string()),
+        (Some(distance), "by distance".to_string()),
+        (Some(curvature), "by curvature".to_string()),
+    ];
+    choice(ui, "adaptive", &mut cutting.adaptive, &all);
+    let Some(by) = &mut cutting.adaptive else {
+        return;
+    };
+    row(ui, "", |ui| match by {
+        Adaptive::Screen(pixels) => {
+            let slider = Slider::new(pixels, 1.0..=64.0).logarithmic(true);
+            ui.add(slider.max_decimals(1).suffix(" px"));
+        }
+        Adaptive::Curvature(degrees) => {
+            let slider = Slider::new(degrees, 1.0..=45.0).logarithmic(true);
+            ui.add(slider.max_decimals(1).suffix("°"));
+        }
+        Adaptive::Distance(units) => {
+            let mut nearest = units.is_none();
+            ui.checkbox(&mut nearest, "full at the nearest");
+            match (&mut *units, nearest) {
+                (Some(units), false) => {
+                    let value = egui::DragValue::new(units).range(1e-3..=1e6);
+                    ui.add(value.speed(0.02).max_decimals(2));
+                }
+                _ => *units = (!nearest).then_some(1.0),
+            }
+        }
+    });
+}
+
+/// What is left out.
+fn culling(ui: &mut Ui, cutting: &mut Cutting) {
+    let names = [
+        (Cull::None, "none"),
+        (Cull::Back, "backs"),
+        (Cull::Front, "fronts"),
+    ];
+    let all = names.map(|(cull, words)| (cull, words.to_string()));
+    choice(ui, "culling", &mut cutting.culling.triangles, &all);
+    let able = cutting.may_decide();
+    row(ui, "", |ui| {
+        let why = "patches are left out by the device: with the tessellator and the cache";
+        let all = [
+            (
+                &mut cutting.culling.frustum,
+                "outside",
+                "patches outside of the picture",
+            ),
+            (
+                &mut cutting.culling.small,
+                "small",
+                "patches between samples",
+            ),
+        ];
+        for (on, words, what) in all {
+            let toggle = ui
+                .add_enabled_ui(able, |ui| ui.toggle_value(on, words))
+                .inner;
+            toggle.on_hover_text(what).on_disabled_hover_text(why);
+        }
+    });
 }
 
 fn compare(ui: &mut Ui, viewer: &mut Viewer) {

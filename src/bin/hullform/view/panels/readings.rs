@@ -32,6 +32,16 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, status: &Status<'_>) {
         ("points computed", grouped(cost.points)),
     ];
     table(ui, "frame", counts.into_iter());
+    if let Some(outcome) = &readings.outcome {
+        let rows = [
+            ("patches drawn", outcome.drawn),
+            ("outside, left out", outcome.frustum),
+            ("backs, left out", outcome.back),
+            ("small, left out", outcome.small),
+        ];
+        let rows = rows.into_iter().map(|(name, count)| (name, grouped(count)));
+        table(ui, "decided", rows);
+    }
     graph(
         ui,
         "device",
@@ -82,7 +92,8 @@ fn pacing(ui: &mut Ui, viewer: &mut Viewer) {
 fn table<'a>(ui: &mut Ui, name: &str, rows: impl Iterator<Item = (&'a str, String)>) {
     let grid = egui::Grid::new(("table", name))
         .num_columns(2)
-        .spacing([8.0, 2.0]);
+        .min_row_height(14.0)
+        .spacing([8.0, 1.0]);
     grid.show(ui, |ui| {
         for (name, value) in rows {
             ui.label(

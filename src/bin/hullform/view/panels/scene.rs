@@ -5,7 +5,6 @@ use glam::DVec2;
 
 use super::super::command::Command;
 use super::super::draft::Change;
-use super::super::errors::Legend;
 use super::super::selection::{Sight, Tool, hit};
 use super::super::viewer::{Beside, Viewer, Wish};
 use super::super::viewport::Area;
@@ -30,13 +29,11 @@ pub(super) fn show(ctx: &Context, viewer: &mut Viewer, status: &Status<'_>) {
         if !on_line {
             mouse(ui, viewer, rect, &response);
         }
-        names(ui, viewer, rect);
+        names(ui, viewer, status, rect);
         if viewer.look.numbers {
             numbers(ui, viewer, rect);
         }
-        if let Some(legend) = &status.scale {
-            scale(ui, legend, rect);
-        }
+        super::legend::show(ui, viewer, status, rect);
     });
 }
 
@@ -185,7 +182,7 @@ fn move_picked(viewer: &mut Viewer, rect: Rect, by: DVec2) {
 }
 
 /// The names of methods that are compared.
-fn names(ui: &Ui, viewer: &Viewer, rect: Rect) {
+fn names(ui: &Ui, viewer: &Viewer, status: &Status<'_>, rect: Rect) {
     if viewer.compare.beside == Beside::Alone {
         return;
     }
@@ -198,15 +195,16 @@ fn names(ui: &Ui, viewer: &Viewer, rect: Rect) {
         (viewer.cutting.method, egui::Align2::RIGHT_TOP, -12.0),
         (viewer.compare.other, egui::Align2::LEFT_TOP, 12.0),
     ];
-    for (method, align, off) in sides {
-        let words = method.unwrap_or("by model");
+    for (number, (method, align, off)) in sides.into_iter().enumerate() {
+        let drawn = status.methods.get(number).copied();
+        let words = drawn.or(method).unwrap_or("by model");
         let place = Pos2::new(x + off, rect.top() + 12.0);
         label(ui, place, align, words, 14.0);
     }
 }
 
 /// Words over the picture, with a shade behind them.
-fn label(ui: &Ui, at: Pos2, align: egui::Align2, words: &str, size: f32) {
+pub(super) fn label(ui: &Ui, at: Pos2, align: egui::Align2, words: &str, size: f32) {
     let font = FontId::proportional(size);
     let shade = Color32::from_black_alpha(150);
     let painter = ui.painter();
@@ -214,24 +212,18 @@ fn label(ui: &Ui, at: Pos2, align: egui::Align2, words: &str, size: f32) {
     painter.text(at, align, words, font, Color32::WHITE);
 }
 
-/// Numbers of vertices and faces, where they are seen.
+/// Numbers of vertices and faces, the nearest first, where they leave one another room.
 fn numbers(ui: &Ui, viewer: &Viewer, rect: Rect) {
     let sight = sight(viewer, rect);
-    let mut left = MOST_NUMBERS;
-    let mut write = |point, words: String, vertex: bool| {
-        let Some((at, _)) = sight.place(point) else {
+    let mut all = Vec::new();
+    let mut add = |point, words: String, vertex: bool| {
+        let Some((at, depth)) = sight.place(point) else {
             return;
         };
         let at = rect.min + egui::vec2(at.x as f32, at.y as f32);
-        if left == 0 || !rect.contains(at) {
-            return;
+        if rect.contains(at) {
+            all.push((depth, at, words, vertex));
         }
-        left -= 1;
-        let (size, align) = match vertex {
-            true => (11.0, egui::Align2::LEFT_BOTTOM),
-            false => (12.0, egui::Align2::CENTER_CENTER),
-        };
-        label(ui, at, align, &words, size);
     };
     for part in &viewer.parts {
         let Some(model) = &part.model else { continue };
@@ -240,56 +232,45 @@ fn numbers(ui: &Ui, viewer: &Viewer, rect: Rect) {
             continue;
         }
         for (number, &point) in points.iter().enumerate() {
-            write(point, number.to_string(), true);
+            add(point, number.to_string(), true);
         }
         for (number, face) in model.mesh().faces().enumerate() {
             let sum: glam::DVec3 = face.iter().map(|&v| points[v as usize]).sum();
-            write(sum / face.len() as f64, format!("f{number}"), false);
+            add(sum / face.len() as f64, format!("f{number}"), false);
         }
+    }
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut taken = Taken::default();
+    let free = all
+        .iter()
+        .filter(|(_, at, words, _)| taken.take(*at, words.len()));
+    for (_, at, words, vertex) in free.take(MOST_NUMBERS) {
+        let (size, align) = match vertex {
+            true => (11.0, egui::Align2::LEFT_BOTTOM),
+            false => (12.0, egui::Align2::CENTER_CENTER),
+        };
+        label(ui, *at, align, words, size);
     }
 }
 
-/// The colours of a map, from its least to its greatest number.
-fn scale(ui: &Ui, legend: &Legend, rect: Rect) {
-    let width = 220.0f32.min(rect.width() - 40.0);
-    if width < 60.0 {
-        return;
+/// Where words stand, in cells as high as they are.
+#[derive(Default)]
+struct Taken(std::collections::HashSet<[i32; 2]>);
+
+impl Taken {
+    /// Takes the room for so many signs around a place, if it is free.
+    fn take(&mut self, at: Pos2, signs: usize) -> bool {
+        const CELL: f32 = 8.0;
+        let cell = |x: f32| (x / CELL).floor() as i32;
+        // Twice as high as wide, or higher.
+        let columns = cell(at.x) - 1..=cell(at.x) + signs as i32;
+        let rows = cell(at.y) - 1..=cell(at.y);
+        let cells = columns.flat_map(|x| rows.clone().map(move |y| [x, y]));
+        let cells: Vec<[i32; 2]> = cells.collect();
+        let is_free = cells.iter().all(|cell| !self.0.contains(cell));
+        if is_free {
+            self.0.extend(cells);
+        }
+        is_free
     }
-    let left = rect.right() - width - 20.0;
-    let top = rect.bottom() - 40.0;
-    let steps = 64;
-    for step in 0..steps {
-        let share = (step as f32 + 0.5) / steps as f32;
-        let [r, g, b] = crate::compare::scale::colour(f64::from(share));
-        let byte = |c: f64| (255.0 * c).round() as u8;
-        let x = left + width * step as f32 / steps as f32;
-        let bar = Rect::from_min_size(
-            Pos2::new(x, top),
-            egui::vec2(width / steps as f32 + 0.5, 12.0),
-        );
-        ui.painter()
-            .rect_filled(bar, 0.0, Color32::from_rgb(byte(r), byte(g), byte(b)));
-    }
-    let (low, high) = legend.ends();
-    label(
-        ui,
-        Pos2::new(left, top + 14.0),
-        egui::Align2::LEFT_TOP,
-        &low,
-        12.0,
-    );
-    label(
-        ui,
-        Pos2::new(left + width, top + 14.0),
-        egui::Align2::RIGHT_TOP,
-        &high,
-        12.0,
-    );
-    label(
-        ui,
-        Pos2::new(left, top - 4.0),
-        egui::Align2::LEFT_BOTTOM,
-        &legend.title(),
-        12.0,
-    );
 }

@@ -16,34 +16,41 @@ pub const MOUSE: [(&str, &str); 6] = [
 ];
 
 /// The width of a column, in points, and what of a window surrounds a sheet.
-const COLUMN: f32 = 330.0;
+const COLUMN: f32 = 345.0;
 const AROUND: egui::Vec2 = egui::vec2(48.0, 96.0);
 
 pub(super) fn show(ctx: &Context, viewer: &mut Viewer) {
-    let mut open = true;
-    let window = egui::Window::new("keys and mouse")
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
     let room = (ctx.content_rect().size() - AROUND).max(egui::vec2(120.0, 60.0));
-    window.show(ctx, |ui| {
-        let area = egui::ScrollArea::both()
-            .max_width(room.x)
-            .max_height(room.y);
-        area.show(ui, |ui| columns(ui, (room.x / COLUMN) as usize));
+    let sheet = egui::Area::new("keys and mouse".into())
+        .order(egui::Order::Foreground)
+        .default_size(room)
+        .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
+    sheet.show(ctx, |ui| {
+        egui::Frame::window(&ctx.style()).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new("keys and mouse").strong().size(15.0));
+                viewer.sheet = !ui.small_button("close").clicked();
+            });
+            ui.add_space(4.0);
+            let fit = ((room.x / COLUMN) as usize).clamp(1, 3);
+            // Words tell no width while they may still be broken.
+            ui.set_min_width(room.x.min(COLUMN * fit as f32));
+            let area = egui::ScrollArea::both()
+                .max_width(room.x)
+                .max_height(room.y);
+            area.show(ui, |ui| columns(ui, fit));
+        });
     });
-    viewer.sheet = open;
 }
 
-/// All keys in as many columns as there is room for, three at most.
+/// All keys in as many columns.
 fn columns(ui: &mut Ui, fit: usize) {
     let mouse = MOUSE.iter().map(|&(how, what)| (how.to_string(), what));
     let keys = KEYS
         .iter()
         .map(|binding| (key_words(binding), binding.words));
     let all: Vec<_> = mouse.chain(keys).collect();
-    let rows = all.len().div_ceil(fit.clamp(1, 3));
+    let rows = all.len().div_ceil(fit);
     ui.horizontal_top(|ui| {
         for (number, column) in all.chunks(rows).enumerate() {
             let grid = egui::Grid::new(("keys", number)).spacing([14.0, 3.0]);

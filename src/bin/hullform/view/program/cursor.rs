@@ -1,6 +1,7 @@
 //! What is under the cursor.
 
 use glam::DVec2;
+use hullform::tessellation::Levels;
 
 use super::Program;
 use crate::view::piece::Piece;
@@ -25,12 +26,21 @@ impl Program {
                 all.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
             found.piece = staged.sides.get(side.recipe).and_then(|drawn| {
                 let uv = found.uv.map(|x| x as f32);
-                Piece::new(
-                    drawn.surface.prepared(),
-                    drawn.list.as_ref()?,
-                    found.face,
-                    uv,
-                )
+                let prepared = drawn.surface.prepared();
+                let decided = |pass: usize, patch: usize| {
+                    let there = drawn.is_decided_there();
+                    let record = drawn
+                        .surface
+                        .decided(pass, 0)
+                        .get(patch)
+                        .filter(|_| there)?;
+                    Some(Levels {
+                        domain: prepared.passes[pass].domain,
+                        edges: record.edges,
+                        inside: record.inside,
+                    })
+                };
+                Piece::new(prepared, drawn.list.as_ref()?, decided, found.face, uv)
             });
             Some(found)
         });

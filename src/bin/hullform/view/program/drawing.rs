@@ -26,25 +26,6 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// Whether another differs by nothing but edits and what is picked.
-    pub fn is_edit_of(&self, other: &Drawing) -> bool {
-        let edited = Drawing {
-            selection: self.selection.clone(),
-            parts: self.parts.clone(),
-            ..other.clone()
-        };
-        edited == *self && other != self
-    }
-
-    /// Whether all control vertices are where they are in another.
-    pub fn has_places_of(&self, other: &Drawing) -> bool {
-        let places = |&(number, moves, _): &(u64, u64, u64)| (number, moves);
-        self.parts
-            .iter()
-            .map(places)
-            .eq(other.parts.iter().map(places))
-    }
-
     /// What the colours of its map mean.
     pub fn legend(&self) -> Option<&Legend> {
         self.legend.as_ref()

@@ -45,6 +45,10 @@ impl Program {
     fn panels_once(&mut self, input: egui::RawInput) -> egui::FullOutput {
         self.look_under_cursor();
         let legend = self.legend();
+        let staged = self.stage.parts.first();
+        let sides = staged.map_or(&[][..], |staged| &staged.sides);
+        let methods = sides.iter().map(|drawn| drawn.surface.prepared().method);
+        let methods: Vec<&'static str> = methods.collect();
         let egui = self.egui.clone();
         let busy = self.busy();
         let (viewer, found) = (&mut self.viewer, self.found.as_ref());
@@ -55,6 +59,7 @@ impl Program {
                 busy: busy.clone(),
                 probe: found,
                 shaders,
+                methods: methods.clone(),
                 scale: legend.clone(),
             };
             panels::show(ctx, viewer, &status);

@@ -26,7 +26,7 @@ pub struct Compiled {
     #[cfg(feature = "shaderc")]
     glsl: std::sync::Arc<hullform::gpu::shaders::Glsl>,
     #[cfg(feature = "shaderc")]
-    pipelines: crate::view::context::Made,
+    pipelines: crate::view::context::Pipes,
     /// What has changed of the modules that are in use.
     #[cfg(feature = "shaderc")]
     changed: Vec<String>,

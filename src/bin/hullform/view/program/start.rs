@@ -13,9 +13,10 @@ use crate::db::database;
 use crate::model;
 use crate::view::context::{Context, Readied, under_scheme};
 use crate::view::errors::{self, Measured, Subject};
-use crate::view::part::Part;
+use crate::view::live::Live;
+use crate::view::part::{Part, Wanted};
 use crate::view::readings::grouped;
-use crate::view::stage::{Stage, Staged, style_of};
+use crate::view::stage::{Built, Stage, Staged, style_of};
 use crate::view::workers::Entrance;
 
 /// How many pipelines are made at once: what one looks at now comes before what one has looked at.
@@ -80,12 +81,17 @@ impl Program {
         else {
             return Ok(());
         };
-        let same = |staged: &&Staged| staged.number == number && staged.wanted == wanted;
-        let is_there = self.stage.parts.iter().any(|staged| same(&staged));
-        let runs = self.running.built.iter().any(|(other, _)| *other == number);
+        let staged = self.stage.parts.iter().find(|s| s.number == number);
+        let built = self.running.built.iter().map(|(other, _)| *other);
+        let edited = self.running.edited.iter().map(|(other, _)| *other);
+        let runs = built.chain(edited).any(|other| other == number);
+        let is_there = staged.is_some_and(|staged| staged.wanted == wanted);
         let key = (number, wanted);
         if is_there || runs || self.failed.built.contains(&key) {
             return Ok(());
+        }
+        if staged.is_some_and(|s| s.live.is_some() && key.1.is_edit_of(&s.wanted)) {
+            return self.edit(place, key.1);
         }
         // Others of it may do now.
         self.failed.built.retain(|(other, _)| *other != number);
@@ -104,24 +110,55 @@ impl Program {
             let scheme = asked.scheme.unwrap_or(mesh.options().scheme);
             let model = Model::new(under_scheme(mesh, scheme, how)?);
             drop(span);
-            let mut sides = Vec::new();
+            let (mut sides, mut editables) = (Vec::new(), Vec::new());
             for &recipe in &asked.recipes {
-                let readied = Readied::new(&model, recipe.method, &database)?;
-                let drawn = entrance.enter()?.place(&model, readied, recipe)?;
+                let readied = Readied::new(&model, recipe, &database)?;
+                let (drawn, editable) = entrance.enter()?.place(&model, readied, recipe)?;
+                let options = drawn.surface.options();
                 for style in &styles {
                     let style = Style {
-                        backend: recipe.backend,
-                        residence: recipe.residence,
+                        backend: options.backend,
+                        residence: options.residence,
                         ..*style
                     };
                     entrance.enter()?.make(drawn.surface.prepared(), style)?;
                 }
                 sides.push(drawn);
+                editables.extend(editable);
             }
-            Ok((Arc::new(model), sides))
+            let live = match editables.len() == sides.len() {
+                true => Live::new(&model, editables, draft),
+                false => None,
+            };
+            let model = Arc::new(model);
+            Ok(Built { model, sides, live })
         };
         let told = move |result| Done::Built(number, wanted, result);
         self.workers.start("build", work, told)
+    }
+
+    /// Has what was prepared of a part brought up to an edit.
+    fn edit(&mut self, place: usize, wanted: Wanted) -> Result<()> {
+        let part = &self.viewer.parts[place];
+        let (number, history) = (part.number(), part.history());
+        let Some((draft, dragged)) = history.map(|h| (h.draft().clone(), h.is_dragging())) else {
+            return Ok(());
+        };
+        let database = self.database(dragged)?;
+        let mut parts = self.stage.parts.iter_mut();
+        let staged = parts.find(|staged| staged.number == number);
+        let Some((live, before)) = staged.and_then(|s| Some((s.live.take()?, s.wanted.clone())))
+        else {
+            return Ok(());
+        };
+        self.running.edited.push((number, before));
+        let work = move |_: &Entrance<Context>| {
+            let mut live = live;
+            let updates = live.follow(&draft, &database)?;
+            Ok((live, updates))
+        };
+        let told = move |result| Done::Edited(number, wanted, result);
+        self.workers.start("edit", work, told)
     }
 
     /// Where plans are from: while something is dragged from one over this run's, which goes when that is over.

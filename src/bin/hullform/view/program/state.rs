@@ -1,5 +1,6 @@
 //! The state of the window in words and numbers: for panels, and for who drives it by script.
 
+use hullform::gpu::Decides;
 use hullform::method::Prepared;
 use serde_json::{Value, json};
 
@@ -129,6 +130,7 @@ impl Program {
             "asked": viewer.intent.is_some(),
             "shaders": { "version": self.context.shaders().version, "error": self.live.error },
             "vertices": self.readings.cost.vertices,
+            "outcome": self.readings.outcome.as_ref().map(crate::deciding::as_json),
             "memory": memory,
         })
     }
@@ -156,8 +158,12 @@ impl Program {
             "residence": cutting.residence.name(),
             "spacing": cutting.spacing.name(),
             "level": cutting.level,
-            "pixels": cutting.pixels,
-            "cull": cutting.cull.name(),
+            "adaptive": cutting.adaptive.map(|by| by.to_string()),
+            "cull": cutting.culling.to_string(),
+            "decides": match cutting.decides() {
+                Decides::Device => "device",
+                Decides::Host => "host",
+            },
             "amplify": cutting.amplify,
         })
     }
@@ -179,6 +185,7 @@ impl Program {
             json!({
                 "name": part.name(),
                 "methods": methods,
+                "live": staged.is_some_and(|staged| staged.live.is_some()),
                 "version": staged.map(|staged| staged.wanted.version),
                 "wanted": history.map(|history| history.topology()),
                 "steps": history.map(|history| history.steps()),

@@ -1,26 +1,29 @@
 //! What workers have brought, and files that have changed.
 
-use std::sync::Arc;
-
-use hullform::mesh::{ControlMesh, Model};
+use hullform::mesh::ControlMesh;
+use hullform::method::Update;
 use hullform::{Error, Result};
 
 use super::{Done, Program};
-use crate::view::context::Drawn;
+use crate::view::live::Live;
 use crate::view::part::Wanted;
-use crate::view::stage::Staged;
+use crate::view::stage::{Built, Staged};
 use crate::view::watch;
 
 impl Program {
-    /// Takes what workers have brought, when nothing is drawn; whether there was anything.
-    pub fn take(&mut self) -> Result<bool> {
+    /// Takes what the last frame tells and workers have brought, when nothing is drawn. What would change a scene that is not whole waits for that.
+    pub fn take(&mut self) -> Result<()> {
+        self.take_times();
         self.take_changes();
-        let done = self.workers.done();
-        let any = !done.is_empty();
-        for done in done {
-            self.take_one(done)?;
+        let mut all = std::mem::take(&mut self.waiting);
+        all.extend(self.workers.done());
+        for done in all {
+            match self.stage.is_drawing() && done.changes_the_stage() {
+                true => self.waiting.push(done),
+                false => self.take_one(done)?,
+            }
         }
-        Ok(any)
+        Ok(())
     }
 
     /// Has models read again whose files have changed.
@@ -50,6 +53,9 @@ impl Program {
         match done {
             Done::Read(number, result) => self.take_mesh(number, result),
             Done::Built(number, wanted, result) => return self.take_built(number, wanted, result),
+            Done::Edited(number, wanted, result) => {
+                return self.take_edited(number, wanted, result);
+            }
             Done::Piped(key, result) => {
                 self.running.piped.retain(|other| *other != key);
                 if let Err(error) = result {
@@ -130,26 +136,23 @@ impl Program {
         }
     }
 
-    fn take_built(
-        &mut self,
-        number: u64,
-        wanted: Wanted,
-        result: Result<(Arc<Model>, Vec<Drawn>)>,
-    ) -> Result<()> {
+    fn take_built(&mut self, number: u64, wanted: Wanted, result: Result<Built>) -> Result<()> {
         self.running.built.retain(|(other, _)| *other != number);
         let parts = &mut self.viewer.parts;
         let Some(part) = parts.iter_mut().find(|part| part.number() == number) else {
             return Ok(());
         };
         match result {
-            Ok((model, sides)) => {
+            Ok(built) => {
                 part.error = None;
-                part.model = Some(model.clone());
-                for refusal in sides.iter().flat_map(|drawn| &drawn.refusals) {
+                part.model = Some(built.model.clone());
+                for refusal in built.sides.iter().flat_map(|drawn| &drawn.refusals) {
                     self.viewer.notices.warn(refusal.clone());
                 }
-                let staged = Staged::new(number, model, wanted, sides);
-                let old = self.stage.put(staged);
+                let old = self.stage.put(Staged::new(number, wanted, built));
+                if old.is_empty() {
+                    self.haste.forget();
+                }
                 self.workers.let_go(old);
                 self.fresh = true;
                 Ok(())
@@ -164,6 +167,60 @@ impl Program {
                 Ok(())
             }
         }
+    }
+}
+
+impl Program {
+    /// Brings surfaces up to an edit, unless there are others by now.
+    fn take_edited(
+        &mut self,
+        number: u64,
+        wanted: Wanted,
+        result: Result<(Live, Vec<Update>)>,
+    ) -> Result<()> {
+        let before = self.running.edited.extract_if(.., |(of, _)| *of == number);
+        let Some((_, before)) = before.last() else {
+            return Ok(());
+        };
+        let mut parts = self.stage.parts.iter_mut();
+        let same = |staged: &&mut Staged| staged.number == number && staged.wanted == before;
+        let Some(staged) = parts.find(same) else {
+            return Ok(());
+        };
+        let edited = result.and_then(|(live, updates)| {
+            // Where it takes other tables, all is prepared anew.
+            match updates.iter().any(|update| update.is_whole) {
+                true => Ok(()),
+                false => {
+                    staged.edit(live, &updates, &self.context)?;
+                    staged.wanted = wanted;
+                    let mut parts = self.viewer.parts.iter_mut();
+                    let part = parts.find(|part| part.number() == number);
+                    part.into_iter().for_each(|part| part.error = None);
+                    Ok(())
+                }
+            }
+        });
+        self.fresh = true;
+        match edited {
+            Err(error) if error.is_of_device() => Err(error),
+            Err(error) => {
+                // What is prepared anew tells what is wrong, if it is still so.
+                tracing::info!("{error}; preparing anew");
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+}
+
+impl Done {
+    /// Whether it changes what a scene is drawn of.
+    fn changes_the_stage(&self) -> bool {
+        matches!(
+            self,
+            Done::Built(..) | Done::Edited(..) | Done::Compiled(..)
+        )
     }
 }
 

@@ -1,17 +1,59 @@
 //! How a frame draws one surface: its points, and its draws, once or with lines over them.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{DrawList, Pipelines, Residence, View, ring};
+use hullform::gpu::{Decided, Decides, Decision, Pipelines, Residence, View, ring};
 use hullform::host::Owned;
+use hullform::method::{Editable, Update};
 
-use super::{Cost, Stage, style};
-use crate::view::context::{Context, Drawn};
-use crate::view::viewer::Viewer;
+use super::Cost;
+use crate::view::context::{Context, Drawn, Growth};
 
 impl Drawn {
+    /// Whether the device decides about its patches.
+    pub fn is_decided_there(&self) -> bool {
+        self.surface.options().decides == Decides::Device
+    }
+
+    /// Brings it up to an edit; the next frame records that. Nothing is drawn at this time.
+    pub(super) fn edit(
+        &mut self,
+        editable: &Editable,
+        update: &Update,
+        context: &Context,
+    ) -> Result<()> {
+        let (device, layout) = (context.device(), context.layout());
+        let memory = &mut device.memory();
+        // SAFETY: all of it was made for this device; nothing that was submitted is still drawn, and what replaces tables is recorded before they are.
+        unsafe {
+            let raw = device.raw();
+            let retired = self.surface.edit(raw, memory, layout, editable, update)?;
+            if !retired.is_empty() {
+                self.growth = Growth::Made;
+                retired.destroy(raw, memory);
+            }
+        }
+        self.list = None;
+        Ok(())
+    }
+
+    /// Gives back what larger buffers were filled from, once they are. Nothing is drawn at this time.
+    pub(super) fn finish(&mut self, context: &Context) {
+        if self.growth != Growth::Recorded {
+            return;
+        }
+        let device = context.device();
+        // SAFETY: device and memory made the surface, and what was recorded is done.
+        unsafe {
+            let memory = &mut device.memory();
+            self.surface.finish_upload(device.raw(), memory);
+        }
+        self.growth = Growth::Done;
+    }
+
     /// Records what comes before rendering: how many control points are computed.
     ///
     /// # Safety
@@ -20,60 +62,54 @@ impl Drawn {
         &mut self,
         cmd: vk::CommandBuffer,
         context: &Context,
-        view: View,
+        views: &[View],
+        decision: Option<&Decision>,
     ) -> Result<u64> {
         let (device, layout) = (context.device().raw(), context.layout());
         let mut points = 0;
         // SAFETY: this function's contract.
         unsafe {
             self.surface.cmd_upload(device, cmd);
+            if self.growth == Growth::Made {
+                self.growth = Growth::Recorded;
+            }
             if let (Some(cache), Some(list)) = (&self.cache, &self.list) {
                 points = self.surface.cmd_cache(device, cmd, layout, cache, list)?;
             }
-            self.surface.cmd_prepare(device, cmd, &[view])?;
+            self.surface.cmd_prepare(device, cmd, views)?;
+            let deciding = context.deciding().zip(decision).zip(self.list.as_ref());
+            if let Some(((pipeline, decision), list)) = deciding.filter(|_| self.is_decided_there())
+            {
+                let decided = Decided {
+                    views: 0..1,
+                    eyes: 1,
+                };
+                let surface = &self.surface;
+                surface.cmd_decide(device, cmd, layout, pipeline, list, decision, &decided)?;
+            }
         }
         Ok(u64::from(points))
     }
 
-    /// Records its draws: solid, and lines over it. What has no pipelines yet is not drawn.
+    /// Records some of its draws in a round: solid, or lines over that.
     ///
     /// # Safety
     /// As `TessellatedSurface::cmd_draw`.
-    pub(super) unsafe fn cmd_draw(
+    pub(super) unsafe fn cmd_batches(
         &self,
         cmd: vk::CommandBuffer,
-        viewer: &Viewer,
         context: &Context,
+        round: u32,
+        range: Range<usize>,
+        pipelines: &Arc<Owned<Pipelines>>,
         cost: &mut Cost,
     ) -> Result<()> {
         let Some(list) = &self.list else {
             return Ok(());
         };
-        cost.vertices += self.vertices;
-        for (round, fill) in (0..).zip(Stage::fills(viewer)) {
-            let key = self.key(style(self, viewer, fill));
-            let Some(pipelines) = context.ready_or_like(&key) else {
-                continue;
-            };
-            // SAFETY: this function's contract.
-            unsafe { self.cmd_round(cmd, context, list, round, &pipelines, cost) }?;
-        }
-        Ok(())
-    }
-
-    /// # Safety
-    /// As there.
-    unsafe fn cmd_round(
-        &self,
-        cmd: vk::CommandBuffer,
-        context: &Context,
-        list: &DrawList,
-        round: u32,
-        pipelines: &Arc<Owned<Pipelines>>,
-        cost: &mut Cost,
-    ) -> Result<()> {
         let (device, layout) = (context.device().raw(), context.layout());
-        for batch in list.round(round)? {
+        let batches = list.round(round)?.skip(range.start);
+        for batch in batches.take(range.len()) {
             let first = batch.points() > 0 && batch.ring_batch() == 0;
             // SAFETY: this function's contract; the target's pass allows the barrier.
             unsafe {

@@ -1,0 +1,355 @@
+//! A scene as it is drawn: in one frame, or in slices over several, so that what takes long leaves the window time in between. What it shows was decided when it began.
+
+use std::sync::Arc;
+
+use hullform::Result;
+use hullform::ash::vk;
+use hullform::gpu::{self, Batch, Decision, Pipelines, View, ring};
+use hullform::host::{OffscreenTarget, Owned, Slice};
+
+use super::{Cost, Side, Stage, Staged, cmd_look, style, view};
+use crate::render;
+use crate::view::context::{Context, Drawn};
+use crate::view::viewer::Viewer;
+use crate::view::viewport::Area;
+
+/// A point of the ring takes as long as so many vertices.
+const POINT: f64 = 0.5;
+/// A vertex whose place the host has told takes as long as so many that are evaluated.
+const FLAT: f64 = 0.1;
+
+/// A scene that is being drawn.
+pub struct Scene {
+    /// The level at which surfaces are cut.
+    pub level: f32,
+    /// Where it is in the window.
+    pub area: Area,
+    /// What it has taken so far.
+    pub cost: Cost,
+    sides: Vec<Side>,
+    views: Vec<Seen>,
+    steps: Vec<Step>,
+    at: Cursor,
+    end: Cursor,
+}
+
+/// With what views a surface is prepared.
+struct Seen {
+    part: usize,
+    recipe: usize,
+    /// What is seen, and where another camera decides what that sees.
+    views: Vec<View>,
+    /// What the device decides, where it does.
+    decision: Option<Decision>,
+}
+
+/// Something that is drawn in a side.
+struct Step {
+    side: usize,
+    what: What,
+}
+
+enum What {
+    /// A map of errors.
+    Map,
+    /// Lines over the surfaces.
+    Overlay,
+    /// The batches of a surface.
+    Surface {
+        part: usize,
+        round: u32,
+        pipelines: Arc<Owned<Pipelines>>,
+    },
+}
+
+/// How far it is drawn: a step, and a batch of that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Cursor {
+    step: usize,
+    batch: usize,
+}
+
+/// What a frame draws of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sliced {
+    /// In units of a vertex.
+    pub work: f64,
+    /// Whether it is whole afterwards.
+    pub is_last: bool,
+}
+
+impl Stage {
+    /// Begins a scene of what was decided, in the place of one that is not whole. What has no pipelines yet is not drawn.
+    pub fn begin(&mut self, viewer: &Viewer, level: f32, context: &Context) {
+        let sides = Stage::sides(viewer);
+        let mut scene = Scene {
+            level,
+            area: viewer.area,
+            cost: Cost::default(),
+            views: Vec::new(),
+            steps: Vec::new(),
+            at: Cursor::default(),
+            end: Cursor::default(),
+            sides,
+        };
+        for (number, side) in scene.sides.iter().enumerate() {
+            let step = |what| Step { side: number, what };
+            for (part, staged) in self.parts.iter().enumerate() {
+                let Some(drawn) = staged.sides.get(side.recipe) else {
+                    continue;
+                };
+                scene.views.push(Seen {
+                    part,
+                    recipe: side.recipe,
+                    ..staged.seen(viewer, drawn, side.viewport, context)
+                });
+                if viewer.compare.map.is_some() {
+                    continue;
+                }
+                scene.cost.vertices += drawn.vertices;
+                for (round, fill) in (0..).zip(Stage::fills(viewer)) {
+                    let key = drawn.key(style(drawn, viewer, fill));
+                    if let Some(pipelines) = context.ready_or_like(&key) {
+                        scene.steps.push(step(What::Surface {
+                            part,
+                            round,
+                            pipelines,
+                        }));
+                    }
+                }
+            }
+            if viewer.compare.map.is_some() {
+                scene.steps.push(step(What::Map));
+            }
+            scene.steps.push(step(What::Overlay));
+        }
+        self.scene = Some(scene);
+    }
+
+    /// Whether a scene is begun and not whole.
+    pub fn is_drawing(&self) -> bool {
+        self.scene.is_some()
+    }
+
+    /// The scene that is not whole.
+    pub fn scene(&self) -> Option<&Scene> {
+        self.scene.as_ref()
+    }
+
+    /// Leaves a scene that is not whole.
+    pub fn abandon(&mut self) {
+        self.scene = None;
+    }
+
+    /// What the next frame draws of the scene: something, and no more than so much work if that can be helped.
+    pub fn slice(&mut self, most: f64) -> Result<Option<Sliced>> {
+        let Some(mut scene) = self.scene.take() else {
+            return Ok(None);
+        };
+        let sliced = scene.plan(self, most);
+        self.scene = Some(scene);
+        sliced.map(Some)
+    }
+
+    /// Records what was asked for last; the scene as it was, where it is whole now.
+    ///
+    /// # Safety
+    /// `cmd` is recording on the device of the context, outside of a render pass; what was recorded of the scene before was executed.
+    pub unsafe fn record(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        target: &OffscreenTarget,
+        context: &Context,
+    ) -> Result<Option<Cost>> {
+        let Some(mut scene) = self.scene.take() else {
+            return Ok(None);
+        };
+        let started = std::time::Instant::now();
+        let _span = tracing::debug_span!("record").entered();
+        // SAFETY: this function's contract, here and below.
+        unsafe {
+            if let Some(timer) = &self.timer {
+                timer.cmd_begin(cmd);
+            }
+            self.cmd_slice(cmd, target, context, &mut scene)?;
+            if let Some(timer) = &self.timer {
+                timer.cmd_end(cmd);
+                self.timed = true;
+            }
+        }
+        scene.at = scene.end;
+        scene.cost.host += started.elapsed().as_secs_f64();
+        if scene.at.step == scene.steps.len() {
+            return Ok(Some(scene.cost));
+        }
+        self.scene = Some(scene);
+        Ok(None)
+    }
+
+    /// # Safety
+    /// As [`record`](Self::record).
+    unsafe fn cmd_slice(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        target: &OffscreenTarget,
+        context: &Context,
+        scene: &mut Scene,
+    ) -> Result<()> {
+        let device = context.device().raw();
+        let slice = scene.kind();
+        // SAFETY: this function's contract; slices come in their order.
+        unsafe {
+            if slice.begins() {
+                for seen in &scene.views {
+                    let drawn = &mut self.parts[seen.part].sides[seen.recipe];
+                    scene.cost.points +=
+                        drawn.cmd_prepare(cmd, context, &seen.views, seen.decision.as_ref())?;
+                }
+            } else {
+                ring::cmd_ring_barrier(device, cmd);
+            }
+            target.begin_slice(cmd, render::CLEAR, slice);
+            let mut side = None;
+            for number in scene.at.step..scene.steps.len() {
+                let batches = scene.batches_of(number);
+                if batches.is_empty() {
+                    break;
+                }
+                let step = &scene.steps[number];
+                if side.replace(step.side) != Some(step.side) {
+                    cmd_look(device, cmd, &scene.sides[step.side]);
+                }
+                let recipe = scene.sides[step.side].recipe;
+                match &step.what {
+                    What::Map => self.maps[recipe].cmd_draw(cmd),
+                    What::Overlay => self.overlay.cmd_draw(cmd),
+                    What::Surface {
+                        part,
+                        round,
+                        pipelines,
+                    } => {
+                        let drawn = &self.parts[*part].sides[recipe];
+                        let cost = &mut scene.cost;
+                        drawn.cmd_batches(cmd, context, *round, batches, pipelines, cost)?;
+                    }
+                }
+            }
+            target.end(cmd);
+            if slice.ends() {
+                for seen in &scene.views {
+                    let drawn = &self.parts[seen.part].sides[seen.recipe];
+                    if seen.decision.is_some() {
+                        drawn.surface.cmd_read_back(device, cmd);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Staged {
+    /// With what views a surface of it is prepared for an area of the window, and what is decided there.
+    fn seen(&self, viewer: &Viewer, drawn: &Drawn, area: Area, context: &Context) -> Seen {
+        let eyes = std::iter::once(viewer.orbit).chain(viewer.frozen);
+        let views = eyes.map(|orbit| view(viewer, orbit.eye(), &self.model, area));
+        let part = viewer
+            .parts
+            .iter()
+            .find(|part| part.number() == self.number);
+        let decided = part.filter(|_| drawn.is_decided_there());
+        let samples = context.mould().samples().as_raw();
+        let limits = context.device().limits();
+        let has_standard_samples = limits.standard_sample_locations != 0;
+        Seen {
+            part: 0,
+            recipe: 0,
+            views: views.collect(),
+            decision: decided.map(|part| {
+                let decision = self.decision(viewer, part, area, samples);
+                gpu::Decision {
+                    // Whoever has samples in places of its own shows what is between the usual ones.
+                    small: decision.small.filter(|_| has_standard_samples),
+                    ..decision
+                }
+            }),
+        }
+    }
+}
+
+/// What a batch takes, in vertices.
+fn work_of(batch: Batch<'_>) -> f64 {
+    f64::from(batch.vertices()) + POINT * f64::from(batch.points())
+}
+
+impl Scene {
+    /// Decides what the next frame draws.
+    fn plan(&mut self, stage: &Stage, most: f64) -> Result<Sliced> {
+        let (mut work, mut end) = (0.0, self.at);
+        'steps: while let Some(step) = self.steps.get(end.step) {
+            let recipe = self.sides[step.side].recipe;
+            match step.what {
+                What::Surface { part, round, .. } => {
+                    if let Some(list) = &stage.parts[part].sides[recipe].list {
+                        for batch in list.round(round)?.skip(end.batch) {
+                            let own = work_of(batch);
+                            if work > 0.0 && work + own > most {
+                                break 'steps;
+                            }
+                            work += own;
+                            end.batch += 1;
+                        }
+                    }
+                }
+                What::Map => work += FLAT * stage.flat[recipe] as f64,
+                What::Overlay => work += FLAT * stage.flat[2] as f64,
+            }
+            end = Cursor {
+                step: end.step + 1,
+                batch: 0,
+            };
+        }
+        self.end = end;
+        Ok(Sliced {
+            work,
+            is_last: end.step == self.steps.len(),
+        })
+    }
+
+    /// The work that all of it is.
+    pub fn work(&self, parts: &[Staged]) -> f64 {
+        let steps = self.steps.iter().filter_map(|step| match step.what {
+            What::Surface { part, round, .. } => {
+                let drawn = &parts[part].sides[self.sides[step.side].recipe];
+                drawn.list.as_ref()?.round(round).ok()
+            }
+            _ => None,
+        });
+        steps.flatten().map(work_of).sum()
+    }
+
+    /// Which slice of the picture comes next.
+    fn kind(&self) -> Slice {
+        let is_first = self.at == Cursor::default();
+        match (is_first, self.end.step == self.steps.len()) {
+            (true, true) => Slice::Whole,
+            (true, false) => Slice::First,
+            (false, false) => Slice::Between,
+            (false, true) => Slice::Last,
+        }
+    }
+
+    /// Which batches of a step are drawn next; of what has none, the first stands for all.
+    fn batches_of(&self, step: usize) -> std::ops::Range<usize> {
+        let first = if step == self.at.step {
+            self.at.batch
+        } else {
+            0
+        };
+        match step.cmp(&self.end.step) {
+            std::cmp::Ordering::Less => first..usize::MAX,
+            std::cmp::Ordering::Equal => first..self.end.batch,
+            std::cmp::Ordering::Greater => 0..0,
+        }
+    }
+}

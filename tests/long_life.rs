@@ -52,6 +52,9 @@ fn at(model: &Model, frame: usize) -> (Cut, Option<DepthTags>) {
     (Cut { level, spacing }, tagged.then(|| DepthTags::new(tags)))
 }
 
+/// Frames after which the process is told, for those who ask for many.
+const TOLD: [usize; 3] = [1_000, 5_000, 10_000];
+
 /// Draws so many frames; the process is looked at if it is told by how much it may grow.
 fn animate(gpu: &Gpu, residence: Residence, frames: usize, growth: Option<u64>) {
     let model = Model::new(builtin("cubes-2x2x2").expect("it is built in"));
@@ -74,6 +77,12 @@ fn animate(gpu: &Gpu, residence: Residence, frames: usize, growth: Option<u64>) 
         assert_eq!(drawn.counters.overflows, 0, "frame {frame}");
         let allocated = gpu.device.allocated_bytes();
         let resident = resident().unwrap_or(0);
+        if TOLD.contains(&(frame + 1)) {
+            println!(
+                "{residence:?}, {} frames: {resident} bytes resident, {allocated} on the device",
+                frame + 1
+            );
+        }
         if frame < (frames / 4).max(CYCLE) {
             early = (allocated.max(early.0), resident.max(early.1));
             continue;

@@ -9,8 +9,8 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, Decision, DrawList, Outcome, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
-    Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory,
-    Pipelines, PointPipeline, Pose, Retired, Tables, View,
+    Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Handover,
+    Layout, Memory, Pipelines, PointPipeline, Pose, Retired, Tables, View,
 };
 use crate::mesh::Model;
 use crate::method::{CachedPoints, DepthTags, Editable, Prepared, Update};
@@ -24,6 +24,8 @@ pub struct TessellatedSurface {
     tables: Tables,
     pose: Pose,
     slot: FrameSlot,
+    /// Whether tables and pose were released by the last upload that is handed over.
+    released: [bool; 2],
 }
 
 impl TessellatedSurface {
@@ -125,7 +127,12 @@ impl TessellatedSurface {
         let positions = model.positions();
         // SAFETY: as above.
         match unsafe { Pose::new(device, allocator, layout, &tables, &positions, &options) } {
-            Ok(pose) => Ok(TessellatedSurface { tables, pose, slot }),
+            Ok(pose) => Ok(TessellatedSurface {
+                tables,
+                pose,
+                slot,
+                released: [false; 2],
+            }),
             Err(error) => {
                 // SAFETY: nothing of them has been recorded.
                 unsafe {
@@ -181,6 +188,49 @@ impl TessellatedSurface {
         unsafe {
             self.tables.cmd_upload(device, cmd);
             self.pose.cmd_upload(device, cmd);
+        }
+    }
+
+    /// As [`Tables::cmd_upload_and_release`] and [`Pose::cmd_upload_and_release`]: what has changed, on a queue that copies while others draw. Where it
+    /// returns true, [`cmd_acquire`](Self::cmd_acquire) is recorded with the same families for a queue that draws, before the next of this; otherwise nothing has
+    /// changed.
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn cmd_upload_and_release(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        handover: Handover,
+    ) -> bool {
+        // SAFETY: this function's contract.
+        self.released = unsafe {
+            [
+                self.tables.cmd_upload_and_release(device, cmd, handover),
+                self.pose.cmd_upload_and_release(device, cmd, handover),
+            ]
+        };
+        self.released.contains(&true)
+    }
+
+    /// As [`Tables::cmd_acquire`] and [`Pose::cmd_acquire`], of what the last [`cmd_upload_and_release`](Self::cmd_upload_and_release) has released.
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn cmd_acquire(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        handover: Handover,
+    ) {
+        let [tables, pose] = self.released;
+        if tables {
+            // SAFETY: this function's contract.
+            unsafe { self.tables.cmd_acquire(device, cmd, handover) };
+        }
+        if pose {
+            // SAFETY: as above.
+            unsafe { self.pose.cmd_acquire(device, cmd, handover) };
         }
     }
 

@@ -8,7 +8,8 @@ use ash::vk;
 use failing_driver::Fault;
 
 use crate::common::cli::has_device;
-use crate::trial::{Bench, Outcome, Program, example, is_there, program};
+use crate::trial::{Bench, Outcome, Program, What, example, is_there, program, test};
+use crate::way;
 
 /// What calls return.
 const CODES: [vk::Result; 3] = [
@@ -28,14 +29,19 @@ const NO_DEVICE: [&str; 7] = [
     "vkCreateDevice",
 ];
 
-/// Set to anything, every occurrence of every call fails with every code, and not a sample. Takes half an hour.
+/// Set to anything, every occurrence of every call fails with every code, and not a sample, under validation. Takes half an hour.
 const EVERY: &str = "HULLFORM_EVERY_FAILURE";
 
 /// Programs that take long: of these only the calls are sampled that no program before makes.
-const LONG: [&str; 2] = ["verify caches", "edges"];
+const LONG: [&str; 4] = [
+    "render by the device's levels",
+    "bench of a cache",
+    "verify caches",
+    "edges",
+];
 
 /// Every way that the program and the examples have to Vulkan, with little to draw.
-const PROGRAMS: [Program; 12] = [
+const PROGRAMS: [Program; 16] = [
     program("devices", "devices --device 0"),
     program(
         "render",
@@ -74,6 +80,16 @@ const PROGRAMS: [Program; 12] = [
         "verify --jobs 1 --filter determinism.cache.pole-64-equal --csv OUT/a.csv",
     ),
     example("headless_png", ""),
+    program(
+        "render by the device's levels",
+        "render builtin:cube --size 32x24 --adaptive screen:8 --cull all -o OUT/a.png",
+    ),
+    program(
+        "bench of a cache",
+        "bench builtin:cube --levels 2 --methods quadtree --residence cache --static --passes 2 --instances 2 --frames 1 --csv OUT/a.csv",
+    ),
+    test(way::NAME),
+    example("engine", "--frames 2 -o OUT/a.png"),
     example("edges", "--levels 1 cube"),
 ];
 
@@ -96,8 +112,8 @@ fn every_call_that_fails_is_an_error_and_no_crash() {
     if !has_device() {
         return;
     }
-    let bench = Bench::new();
     let every = std::env::var_os(EVERY).is_some();
+    let bench = Bench::validating(every);
     let mut trials = Vec::new();
     let mut sound = BTreeMap::new();
     for program in PROGRAMS.into_iter().filter(|&program| is_there(program)) {
@@ -110,6 +126,7 @@ fn every_call_that_fails_is_an_error_and_no_crash() {
             outcome.describe()
         );
         assert_eq!(outcome.faults(), [""; 0], "{}", program.name);
+        assert!(!complains(&outcome), "{}", outcome.describe());
         assert!(
             !outcome.reports.is_empty(),
             "{}: the layer was there",
@@ -131,7 +148,7 @@ fn every_call_that_fails_is_an_error_and_no_crash() {
         let files = outcome.files;
         sound.insert(program.name, Sound { calls, files });
     }
-    let failures = try_all(&trials, &sound);
+    let failures = try_all(&trials, &sound, every);
     println!("{} failures of {} programs", trials.len(), sound.len());
     for program in sound.keys() {
         let own = trials.iter().filter(|trial| trial.program.name == *program);
@@ -171,13 +188,13 @@ fn sample(program: Program, call: &str, count: u32, number: usize, every: bool) 
 }
 
 /// Tries all, two at a time, and returns what went wrong.
-fn try_all(trials: &[Trial], sound: &BTreeMap<&str, Sound>) -> Vec<String> {
+fn try_all(trials: &[Trial], sound: &BTreeMap<&str, Sound>, validates: bool) -> Vec<String> {
     let next = AtomicUsize::new(0);
     let failures = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
-                let bench = Bench::new();
+                let bench = Bench::validating(validates);
                 while let Some(trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let fault = Fault::once(&trial.call, trial.occurrence, trial.code);
                     let outcome = bench.run(trial.program, &fault);
@@ -203,6 +220,13 @@ fn try_all(trials: &[Trial], sound: &BTreeMap<&str, Sound>) -> Vec<String> {
     failures.into_inner().expect("nobody panicked")
 }
 
+fn complains(outcome: &Outcome) -> bool {
+    let words = outcome.words();
+    ["VUID-", "SYNC-HAZARD", "UNASSIGNED-"]
+        .iter()
+        .any(|word| words.contains(word))
+}
+
 /// What is wrong about how a program took a failure.
 fn judge(trial: &Trial, outcome: &Outcome, sound: &Sound) -> Vec<&'static str> {
     let mut wrong = Vec::new();
@@ -217,13 +241,15 @@ fn judge(trial: &Trial, outcome: &Outcome, sound: &Sound) -> Vec<&'static str> {
         "objects were left or destroyed too early",
     );
     hold(!outcome.words().contains("panicked"), "it panicked");
+    hold(!complains(outcome), "the validation layer has words");
     // The allocator asks for other memory where there is none of the best.
     let may_recover = trial.call == "vkAllocateMemory";
     if may_recover && outcome.code() == Some(0) {
         hold(outcome.files == sound.files, "it did not notice");
         return wrong;
     }
-    let no_device = NO_DEVICE.contains(&&*trial.call) && trial.program.example.is_none();
+    let hullform = trial.program.what == What::Hullform;
+    let no_device = NO_DEVICE.contains(&&*trial.call) && hullform;
     hold(
         outcome.code() == Some(if no_device { 3 } else { 1 }),
         "the exit code",

@@ -8,3 +8,4 @@ mod failures;
 mod losses;
 mod trial;
 mod waits;
+mod way;

@@ -7,13 +7,22 @@ use failing_driver::{FailingDriver, Fault, Report};
 
 use crate::common::cli::{hullform, stderr, stdout};
 
+/// What is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What {
+    Hullform,
+    /// An example of ours.
+    Example(&'static str),
+    /// A test of these that is else ignored.
+    Test(&'static str),
+}
+
 /// A program with arguments; `OUT` in them is the scratch folder that it writes into.
 #[derive(Clone, Copy, Debug)]
 pub struct Program {
     /// What messages of tests call it.
     pub name: &'static str,
-    /// An example of ours instead of `hullform`.
-    pub example: Option<&'static str>,
+    pub what: What,
     /// With spaces between; none has one in it.
     pub arguments: &'static str,
 }
@@ -22,7 +31,7 @@ pub struct Program {
 pub const fn program(name: &'static str, arguments: &'static str) -> Program {
     Program {
         name,
-        example: None,
+        what: What::Hullform,
         arguments,
     }
 }
@@ -31,8 +40,17 @@ pub const fn program(name: &'static str, arguments: &'static str) -> Program {
 pub const fn example(name: &'static str, arguments: &'static str) -> Program {
     Program {
         name,
-        example: Some(name),
+        what: What::Example(name),
         arguments,
+    }
+}
+
+/// A test of these, by its name.
+pub const fn test(name: &'static str) -> Program {
+    Program {
+        name,
+        what: What::Test(name),
+        arguments: "",
     }
 }
 
@@ -41,6 +59,8 @@ pub struct Bench {
     _folder: tempfile::TempDir,
     driver: FailingDriver,
     out: PathBuf,
+    /// Whether what the programs do is validated, beneath the driver that fails.
+    validates: bool,
 }
 
 /// What became of a program.
@@ -60,6 +80,15 @@ impl Bench {
             driver: FailingDriver::install(folder.path()),
             _folder: folder,
             out,
+            validates: false,
+        }
+    }
+
+    /// The same, where what the programs do is validated if so.
+    pub fn validating(validates: bool) -> Bench {
+        Bench {
+            validates,
+            ..Bench::new()
         }
     }
 
@@ -68,11 +97,19 @@ impl Bench {
         let out = self.out.to_str().expect("a plain path");
         let arguments = program.arguments.split_whitespace();
         let arguments: Vec<String> = arguments.map(|word| word.replace("OUT", out)).collect();
-        let mut command = match program.example {
-            Some(name) => Command::new(path_of(name)),
-            None => hullform(&[]),
+        let mut command = match program.what {
+            What::Hullform => hullform(&[]),
+            What::Example(name) => Command::new(path_of(name)),
+            What::Test(name) => {
+                let mut itself = Command::new(this_test());
+                itself.args(["--exact", name, "--ignored", "--nocapture"]);
+                itself
+            }
         };
         command.args(&arguments).current_dir(&self.out);
+        if self.validates {
+            validate(&mut command);
+        }
         self.driver.apply(&mut command, fault);
         let output = command.output().expect("the program starts");
         Outcome {
@@ -131,18 +168,35 @@ fn taken(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
+fn this_test() -> PathBuf {
+    std::env::current_exe().expect("a test knows where it is")
+}
+
+/// Core and synchronization validation, whose messages are among the program's words.
+fn validate(command: &mut Command) {
+    command
+        .env("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation")
+        .env(
+            "VK_LAYER_ENABLES",
+            "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT",
+        );
+}
+
 /// Where cargo puts examples. `cargo test` builds them, `cargo test --test drivers` does not.
 pub fn path_of(name: &str) -> PathBuf {
-    let test = std::env::current_exe().expect("a test knows where it is");
+    let test = this_test();
     let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
     profile.join("examples").join(name)
 }
 
 /// Whether a program is there; says so if not.
 pub fn is_there(program: Program) -> bool {
-    let missing = program.example.filter(|name| !path_of(name).is_file());
-    if let Some(name) = missing {
+    let What::Example(name) = program.what else {
+        return true;
+    };
+    let is_there = path_of(name).is_file();
+    if !is_there {
         println!("skipped: the example {name} is not built; cargo build --example {name}");
     }
-    missing.is_none()
+    is_there
 }

@@ -4,13 +4,12 @@ use ash::vk;
 use failing_driver::Fault;
 
 use crate::common::cli::has_device;
-use crate::trial::{Bench, Program};
+use crate::trial::{Bench, Program, program};
 
-const RENDER: Program = Program {
-    name: "render",
-    example: None,
-    arguments: "render builtin:hull --size 64x48 --level 8 -o OUT/a.png",
-};
+const RENDER: Program = program(
+    "render",
+    "render builtin:hull --size 64x48 --level 8 -o OUT/a.png",
+);
 
 /// `calls` fail for good, from the first on.
 fn lasting(calls: &[&str], code: vk::Result) -> Fault {

@@ -70,6 +70,7 @@ impl Bench {
             });
         // SAFETY: as above.
         let own = |pipelines| unsafe { Owned::new(self.device(), pipelines) };
+        let cached = cached.transpose()?.map(own);
         let decides = (options.decides == Decides::Device)
             // SAFETY: as above.
             .then(|| unsafe { DecidePipeline::new(device, layout, cache) });
@@ -81,7 +82,7 @@ impl Bench {
             bench: self,
             decide_pipeline: decides,
             decision: Decision::default(),
-            cache_pipelines: cached.transpose()?.map(own),
+            cache_pipelines: cached,
             surface,
             view: from_the_side(model),
             tags: None,

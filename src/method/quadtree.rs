@@ -25,7 +25,7 @@ use glam::Vec3;
 
 use crate::abi;
 use crate::error::Result;
-use crate::mesh::{Model, Scheme};
+use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
 use crate::method::patches::{self, Part};
 use crate::method::{Contract, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces};
@@ -137,10 +137,12 @@ impl Edits for Planner {
         &mut self,
         prepared: &mut Prepared,
         model: &Model,
-        faces: &[u32],
+        changes: &ChangeSet,
         database: &Database,
     ) -> Result<Vec<PassChange>> {
+        let faces = changes.faces();
         let (parts, gone) = patches::parts_of(model, faces);
+        self.renumber(changes, model.topology());
         let wanted = Wanted {
             faces,
             parts: &parts,

@@ -12,7 +12,7 @@ use crate::gpu::{
     Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Layout, Memory,
     Pipelines, PointPipeline, Pose, Retired, Tables, View,
 };
-use crate::mesh::Model;
+use crate::mesh::{ChangeSet, Model};
 use crate::method::{CachedPoints, DepthTags, Editable, Prepared, Update};
 
 /// A prepared model on the device: [`Tables`], a [`Pose`] and a [`FrameSlot`] in one. It borrows nothing; the owner calls
@@ -211,6 +211,26 @@ impl TessellatedSurface {
         let tables = &mut self.tables;
         // SAFETY: this function's contract.
         unsafe { tables.edit(device, allocator, layout, editable, update) }
+    }
+
+    /// As [`Pose::edit`], after [`edit`](Self::edit): vertices that an edit has moved or added.
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn edit_pose(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        model: &Model,
+        changes: &ChangeSet,
+    ) -> Result<Retired> {
+        let (tables, pose) = (&self.tables, &mut self.pose);
+        // SAFETY: this function's contract.
+        unsafe { pose.edit(device, allocator, layout, tables, model, changes) }
     }
 
     /// As [`Pose::move_vertices`].

@@ -9,7 +9,7 @@ use crate::frame::{Decides, Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::changes::{self, Edited};
 use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
-use crate::gpu::{Layout, Memory};
+use crate::gpu::{Layout, Memory, Retired};
 use crate::method::{CachedPoints, Editable, Prepared, Table, Update, deciding_tables};
 
 /// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
@@ -30,31 +30,6 @@ pub struct Tables {
     options: SurfaceOptions,
     /// None where nothing is edited.
     edited: Option<Edited>,
-}
-
-/// What an edit has replaced on the device. The frames that were recorded before may still read it: the owner calls [`Retired::destroy`] when they have ended.
-#[derive(Debug, Default)]
-#[must_use = "it is destroyed when the frames that were recorded before have ended"]
-pub struct Retired {
-    tables: Option<Box<Tables>>,
-}
-
-impl Retired {
-    /// Whether there is nothing to be destroyed, as after most edits.
-    pub fn is_empty(&self) -> bool {
-        self.tables.is_none()
-    }
-
-    /// Destroys it.
-    ///
-    /// # Safety
-    /// As [`Tables::destroy`]: no submitted command still uses the tables as they were before the edit, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
-        if let Some(tables) = self.tables {
-            // SAFETY: this function's contract.
-            unsafe { tables.destroy(device, allocator) };
-        }
-    }
 }
 
 impl Tables {
@@ -128,8 +103,8 @@ impl Tables {
         // SAFETY: this function's contract.
         let larger =
             unsafe { Tables::editable(device, allocator, layout, editable, &self.options)? };
-        let tables = Some(Box::new(std::mem::replace(self, larger)));
-        Ok(Retired { tables })
+        let Tables { bound, staging, .. } = std::mem::replace(self, larger);
+        Ok(Retired::of(bound, staging))
     }
 
     /// # Safety
@@ -312,6 +287,11 @@ impl Tables {
         }
     }
 
+    /// Whether they are edited.
+    pub(super) fn is_editable(&self) -> bool {
+        self.edited.is_some()
+    }
+
     /// What was prepared.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
@@ -342,11 +322,7 @@ impl Tables {
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
     pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
-        if let Some(staging) = self.staging.into_buffer() {
-            // SAFETY: this function's contract.
-            unsafe { staging.destroy(device, allocator) };
-        }
-        // SAFETY: as above.
-        unsafe { self.bound.destroy(device, allocator) };
+        // SAFETY: this function's contract.
+        unsafe { Retired::of(self.bound, self.staging).destroy(device, allocator) };
     }
 }

@@ -16,6 +16,7 @@ pub mod driver;
 pub mod features;
 mod frame_slot;
 mod indirect;
+mod kept_cache;
 mod layout;
 pub mod memory;
 mod patterns;

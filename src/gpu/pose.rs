@@ -248,8 +248,8 @@ impl Pose {
     /// Brings the control vertices up to an edit that the tables have been brought up to ([`Tables::edit`]): those that were moved or added, or all where the
     /// bounding box is another one. They arrive with the next [`cmd_upload`](Self::cmd_upload), in the order of the queue, as those of [`move_vertices`](Self::move_vertices).
     ///
-    /// A pose of tables that are edited has room for an eighth more vertices and some; where there are more, all are uploaded to a larger buffer, and the one before is
-    /// [`Retired`]. An engine that writes the [`position_buffer`](Self::position_buffer) itself writes another one then.
+    /// A pose of tables that are edited has room for an eighth more vertices and some; where there are more, or more cached points than there is room for, larger buffers are
+    /// made, and the ones before are [`Retired`]. An engine that writes the [`position_buffer`](Self::position_buffer) itself writes another one then.
     ///
     /// # Errors
     /// [`Misuse::OtherSurface`] for other tables, those of methods that compute points beforehand, and those that are not of this model; as [`Pose::new`]. Nothing has changed
@@ -271,7 +271,11 @@ impl Pose {
         if is_other || prepared.points.count > 0 {
             return Err(Error::Misuse(Misuse::OtherSurface));
         }
-        if prepared.vertex_count() > self.room {
+        let cache_fits = self
+            .cache
+            .as_ref()
+            .is_none_or(|cache| cache.has_room(tables));
+        if prepared.vertex_count() > self.room || !cache_fits {
             let options = SurfaceOptions {
                 residence: self.residence,
                 ..SurfaceOptions::default()
@@ -283,7 +287,9 @@ impl Pose {
             let Pose { bound, staging, .. } = std::mem::replace(self, larger);
             return Ok(Retired::of(bound, staging));
         }
-        self.positions_changed();
+        if changes.is_placed_anew() || !changes.moved().is_empty() {
+            self.positions_changed();
+        }
         let place = |vertex: u32| (vertex, model.position(vertex).to_array());
         match changes.is_placed_anew() {
             true => self

@@ -193,7 +193,8 @@ impl TessellatedSurface {
         unsafe { self.tables.finish_upload(device, allocator) };
     }
 
-    /// As [`Tables::edit`]: the next [`cmd_upload`](Self::cmd_upload) brings the edit to the device.
+    /// As [`Tables::edit`]: the next [`cmd_upload`](Self::cmd_upload) brings the edit to the device. Where vertices were added or moved, or points are cached,
+    /// [`edit_pose`](Self::edit_pose) comes behind it.
     ///
     /// # Errors
     /// As there.

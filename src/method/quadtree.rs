@@ -12,6 +12,7 @@ mod places;
 mod plain;
 mod planned;
 mod planner;
+mod recached;
 mod run;
 mod store;
 mod subjects;
@@ -192,6 +193,7 @@ fn planned(
         passes,
         plans: Some(plans),
         cached: Some(cached::cached_points),
+        recached: Some(recached::edited_points),
         ..Prepared::default()
     };
     Ok((prepared, planner))

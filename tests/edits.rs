@@ -646,9 +646,8 @@ fn run_time() -> Option<u64> {
     counts.split_whitespace().next()?.parse().ok()
 }
 
-/// One crease of a model of thousands of faces: a few faces are planned again. `HULLFORM_TIMES=1` prints what that takes on one thread.
-#[test]
-fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
+/// One edit of a model of thousands of faces: a few faces are planned again. `HULLFORM_TIMES=1` prints what that takes on one thread, and what of it the mesh and its topology.
+fn takes_its_surroundings_alone(what: &str, change: impl Fn(&mut Edit, &Model, u32) + Sync) {
     const EDITS: u32 = 40;
     let Some(mesh) = common::model("armorguy") else {
         return;
@@ -659,35 +658,34 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
     let editable = in_place().prepare_editable(&model, options, &database);
     let mut editable = editable.expect("sound options");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let mut random = Random(3);
     let plans = database.len();
-    let (mut fastest, mut faces, mut words) = (f64::INFINITY, 0, 0);
-    let mut one = || {
-        let edge = random.below(model.topology().edge_count());
-        let [a, b] = model.topology().edges()[edge as usize].vertices;
+    let (mut applied, mut faces, mut words) = (0, 0, 0);
+    let mut one = |number: u32| {
         let mut edit = model.mesh().edit();
-        edit.crease(a, b, 1.0 + 0.01 * random.below(300) as f32);
-        let started = Instant::now();
-        let changes = model.apply(&edit).expect("there is such an edge");
+        change(&mut edit, &model, number);
+        let before = run_time();
+        let changes = model.apply(&edit).expect("all of it is there");
+        applied += run_time()
+            .zip(before)
+            .map_or(0, |(now, before)| now - before);
         let update = editable
             .update(&model, &changes, &database)
             .expect("it goes");
-        fastest = fastest.min(started.elapsed().as_secs_f64());
         assert!(!update.is_whole && changes.faces().len() < 100);
         faces += changes.faces().len();
         words += update.words();
     };
     let ran = pool.expect("a thread").install(|| {
         let before = run_time();
-        (0..EDITS).for_each(|_| one());
+        (0..EDITS).for_each(&mut one);
         Some((run_time()? - before?) as f64 / 1e6)
     });
     let each = |all: usize| all as f64 / f64::from(EDITS);
     if std::env::var_os("HULLFORM_TIMES").is_some() {
         println!(
-            "an edit: {:?} ms of one thread, {} ms for the fastest; {} faces, {} plans, {} words",
+            "{what}: {:?} ms of one thread, {} of them the mesh and its topology; {} faces, {} plans, {} words",
             ran.map(|ran| ran / f64::from(EDITS)),
-            1e3 * fastest,
+            applied as f64 / 1e6 / f64::from(EDITS),
             each(faces),
             each(database.len() - plans),
             each(words),
@@ -696,7 +694,36 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
     assert!(each(words) < 20_000.0, "what is uploaded is little");
     let fresh = in_place().prepare_with(&model, options, &database);
     let fresh = fresh.expect("sound options");
-    hold(editable.prepared(), &fresh, &model, "creases", |ptex| {
+    hold(editable.prepared(), &fresh, &model, what, |ptex| {
         ptex % 7 == 0
+    });
+}
+
+#[test]
+fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
+    takes_its_surroundings_alone("a crease", |edit, model, number| {
+        let mut random = Random(number.into());
+        let edge = random.below(model.topology().edge_count());
+        let [a, b] = model.topology().edges()[edge as usize].vertices;
+        edit.crease(a, b, 1.0 + 0.01 * random.below(300) as f32);
+    });
+}
+
+/// Removed, and put back as another one beside it goes.
+#[test]
+fn one_face_of_a_large_model_takes_its_surroundings_alone() {
+    takes_its_surroundings_alone("a face", |edit, model, number| {
+        let mut random = Random(number.into());
+        let face = random.below(model.mesh().face_count()) as usize;
+        let vertices = model.mesh().face(face);
+        match number % 2 {
+            _ if vertices.is_empty() => {}
+            0 => _ = edit.remove_face(face as u32),
+            _ => {
+                _ = edit
+                    .remove_face(face as u32)
+                    .add_face(&[vertices[0], vertices[1], vertices[2]])
+            }
+        }
     });
 }

@@ -3,8 +3,8 @@
 use ash::vk;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Backend, Decides, Drawing, Fill, FrameSlot, Pose, Residence, Retired, SurfaceOptions, Tables,
-    View,
+    Backend, CachePipelines, Decides, Drawing, Fill, FrameSlot, Pose, Residence, Retired,
+    SurfaceOptions, Tables, View,
 };
 use hullform::host::Owned;
 use hullform::mesh::Model;
@@ -100,13 +100,13 @@ fn fresh(model: &Model, database: &Database) -> Prepared {
     prepared.expect("it draws the model")
 }
 
-/// With two frames that the queue has at once, each after an edit or several: what each draws is what a fresh preparation draws, to the bit, and nobody waits.
+/// With two frames that the queue has at once, each after an edit or several: what each draws is what a fresh preparation draws, to the bit, and nobody waits; whether
+/// control points are computed for each frame or kept.
 #[test]
 fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
     let Some(gpu) = Gpu::open() else { return };
     let database = Database::default();
     let deep = cut(8.0, Spacing::Equal);
-    let (device, layout) = (gpu.device.raw(), gpu.layout());
     let workarounds = &gpu.device.info().workarounds;
     let whole = shapes::built_in("hull");
     let options = capturing(&fresh(&whole, &database), &[deep]);
@@ -134,6 +134,21 @@ fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
         "each edit is seen"
     );
 
+    fly(&gpu, whole.clone(), &right, options);
+    let options = SurfaceOptions {
+        residence: Residence::Cache,
+        ..options
+    };
+    fly(&gpu, whole, &right, options);
+    gpu.finish();
+}
+
+/// Draws the frames, two in flight, with an edit before each.
+fn fly(gpu: &Gpu, whole: Model, right: &[Vec<[u32; 8]>], options: SurfaceOptions) {
+    let database = Database::default();
+    let deep = cut(8.0, Spacing::Equal);
+    let (device, layout) = (gpu.device.raw(), gpu.layout());
+    let workarounds = &gpu.device.info().workarounds;
     let mut model = whole;
     let editable = METHODS[0].prepare_editable(&model, MethodOptions::default(), &database);
     let mut editable = editable.expect("it draws the model");
@@ -154,10 +169,19 @@ fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
                 let slot = FrameSlot::new(device, allocator, layout, &tables, workarounds, options);
                 Owned::new(&gpu.device, slot.expect("it fits"))
             };
-            (Flight::new(&gpu, slot), Retired::default())
+            (Flight::new(gpu, slot), Retired::default())
         })
         .collect();
-    let makers = (Backend::Tessellator, Residence::Ring);
+    // SAFETY: as above.
+    let caching = unsafe {
+        let none = vk::PipelineCache::null();
+        let made = CachePipelines::new(device, layout, none, editable.prepared());
+        Owned::new(
+            &gpu.device,
+            made.expect("the shipped modules make pipelines"),
+        )
+    };
+    let makers = (Backend::Tessellator, options.residence);
     let compare = vk::CompareOp::LESS_OR_EQUAL;
     let pipelines = gpu.build(
         editable.prepared(),
@@ -171,7 +195,7 @@ fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
         eye: [0.0; 3],
         displacement: Displacement::default(),
     };
-    let mut larger = 0;
+    let (mut larger, mut computed) = (0, Vec::new());
     for frame in 0..FRAMES + SLOTS {
         let (flight, retired) = &mut flights[frame % SLOTS];
         if frame >= SLOTS {
@@ -195,6 +219,11 @@ fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
                 tables.edit(device, allocator, layout, &editable, &update)
             };
             *retired = edited.expect("there is room");
+            if frame == 9 {
+                let refused = pose.move_vertices(&tables, &[]);
+                let is_small = matches!(refused, Err(Error::Misuse(Misuse::Count { .. })));
+                assert!(is_small, "a pose that has to grow is not drawn");
+            }
             // SAFETY: as above.
             let edited = unsafe {
                 let allocator = &mut gpu.device.allocator();
@@ -213,6 +242,10 @@ fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
             unsafe {
                 tables.cmd_upload(device, cmd);
                 pose.cmd_upload(device, cmd);
+                if options.residence == Residence::Cache {
+                    let points = pose.cmd_cache(device, cmd, layout, &caching, tables, &list);
+                    computed.push(points.expect("there is room"));
+                }
                 let drawing = Drawing {
                     tables,
                     pose,
@@ -231,8 +264,14 @@ fn frames_in_flight_draw_the_surface_that_there_was_when_they_were_recorded() {
         });
     }
     assert!((1..FRAMES / 2).contains(&larger), "most edits have room");
-    drop((flights, pipelines));
-    gpu.finish();
+    if let [first, rest @ ..] = &computed[..] {
+        let least = rest.iter().min().expect("there are more frames");
+        assert!(
+            least * 10 < *first,
+            "points that no edit changes stay: {computed:?}"
+        );
+    }
+    drop((flights, pipelines, caching));
 }
 
 /// What outgrows its room, where the device decides, and what is refused.
@@ -248,20 +287,11 @@ fn what_outgrows_its_room_moves_and_what_does_not_follow_is_refused() {
         decides: Decides::Device,
         ..SurfaceOptions::default()
     };
-    let cached = SurfaceOptions {
-        residence: Residence::Cache,
-        ..options
-    };
     // SAFETY: all of one live device, here and below.
     let made = |options: &SurfaceOptions| unsafe {
         let allocator = &mut gpu.device.allocator();
         Tables::editable(device, allocator, layout, &editable, options)
     };
-    let refused = made(&cached).expect_err("a cache");
-    assert!(
-        matches!(refused, Error::Misuse(Misuse::EditedCache)),
-        "{refused}"
-    );
     // SAFETY: as above.
     let mut tables = unsafe { Owned::new(&gpu.device, made(&options).expect("it fits")) };
     let mut moved = 0;

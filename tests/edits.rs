@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use common::meshes::{cases, wild};
 use glam::Vec2;
-use hullform::mesh::{BoundaryInterpolation, ControlMesh, CreaseMethod, Edit, Model, builtin};
-use hullform::method::{
-    Controls, Editable, METHODS, Method, Pass, Prepared, SurfacePoint, from_ptex,
+use hullform::mesh::{
+    BoundaryInterpolation, ControlMesh, CreaseMethod, Edit, Model, Scheme, Triangulation, builtin,
+    triangulated,
 };
+use hullform::method::{Controls, METHODS, Method, Pass, Prepared, SurfacePoint, from_ptex};
 use hullform::plan::{Database, PlanOptions};
 use proptest::prelude::*;
 
@@ -33,15 +34,21 @@ impl Random {
     }
 }
 
-/// A random step; most are creases. What holes there were are mostly closed again, so that something is left.
+/// A random step of tags; most are creases. What holes there were are mostly closed again, so that something is left.
 fn step(edit: &mut Edit, model: &Model, random: &mut Random) {
     let sharpness = [0.0, 0.0, 0.5, 1.0, 2.0, 3.5, 10.0][random.below(7) as usize];
     let topology = model.topology();
     match random.below(8) {
         0 => edit.corner(random.below(topology.vertex_count()), sharpness),
-        1 => edit.hole(random.below(topology.face_count()), true),
+        1 => {
+            let face = random.below(topology.face_count());
+            match model.mesh().is_removed(face as usize) {
+                true => edit,
+                false => edit.hole(face, true),
+            }
+        }
         2 => match model.mesh().holes() {
-            [] => edit.hole(0, false),
+            [] => edit,
             holes => edit.hole(holes[random.below(holes.len()) as usize], false),
         },
         _ => {
@@ -52,20 +59,144 @@ fn step(edit: &mut Edit, model: &Model, random: &mut Random) {
     };
 }
 
-/// Where each ptex face is drawn: its pass and patch.
-fn places(prepared: &Prepared) -> Vec<Option<(usize, usize)>> {
-    let mut places = Vec::new();
+/// A random change of faces, which are to stay about as many: `most` at most, and vertices no more than so many.
+///
+/// A face is removed, extruded, cut into triangles around a new vertex, turned, or connected to another vertex nearby, which may make any edge one of three faces; or a
+/// triangle is put beside an edge.
+fn reshape(edit: &mut Edit, model: &Model, random: &mut Random, most: [usize; 2]) {
+    let (mesh, topology) = (model.mesh(), model.topology());
+    let there = |face: &usize| !mesh.is_removed(*face);
+    let faces: Vec<usize> = (0..mesh.face_count()).filter(there).collect();
+    let face = faces[random.below(faces.len()) as usize];
+    let vertices = mesh.face(face).to_vec();
+    let n = vertices.len();
+    let centre = vertices.iter().fold([0.0; 3], |sum, &vertex| {
+        let at = mesh.positions()[vertex as usize].to_array();
+        std::array::from_fn(|i| sum[i] + at[i] / n as f64)
+    });
+    // Vertices that no face uses are used again.
+    let unused = |&vertex: &u32| topology.vertex_faces(vertex).is_empty();
+    let mut free = (0..mesh.vertex_count() as u32).filter(unused);
+    let mut next = mesh.vertex_count() as u32;
+    let mut vertex = |edit: &mut Edit, at: [f64; 3]| {
+        if let Some(vertex) = free.next() {
+            edit.position(vertex, at);
+            return vertex;
+        }
+        edit.add_vertex(at);
+        next += 1;
+        next - 1
+    };
+    let is_full = faces.len() + n > most[0] || mesh.vertex_count() + n > most[1];
+    let corner = random.below(n) as usize;
+    match random.below(6) {
+        0 if faces.len() > most[0] / 2 => _ = edit.remove_face(face as u32),
+        1 if !is_full => {
+            let lifted: Vec<u32> = vertices
+                .iter()
+                .map(|&own| {
+                    let at = mesh.positions()[own as usize].to_array();
+                    let lift = [0.0, 0.0, 0.5];
+                    vertex(
+                        edit,
+                        std::array::from_fn(|i| 0.7 * at[i] + 0.3 * centre[i] + lift[i]),
+                    )
+                })
+                .collect();
+            for i in 0..n {
+                let j = (i + 1) % n;
+                edit.add_face(&[vertices[i], vertices[j], lifted[j], lifted[i]]);
+            }
+            edit.reconnect_face(face as u32, &lifted);
+            edit.crease(lifted[0], lifted[1], 1.5);
+        }
+        2 if !is_full => {
+            let middle = vertex(edit, centre);
+            edit.remove_face(face as u32);
+            for i in 0..n {
+                edit.add_face(&[vertices[i], vertices[(i + 1) % n], middle]);
+            }
+        }
+        3 => {
+            let mut turned = vertices;
+            turned.rotate_left(corner);
+            edit.reconnect_face(face as u32, &turned);
+        }
+        4 => {
+            let edge = topology.vertex_edges(vertices[corner]).last();
+            let other = edge.map(|&edge| topology.edges()[edge as usize].other(vertices[corner]));
+            if let Some(other) = other.filter(|other| !vertices.contains(other)) {
+                let mut vertices = vertices;
+                vertices[corner] = other;
+                edit.reconnect_face(face as u32, &vertices);
+            }
+        }
+        _ if !is_full => {
+            let other = vertex(edit, centre.map(|x| x + 0.4));
+            edit.add_face(&[vertices[(corner + 1) % n], vertices[corner], other]);
+        }
+        _ => _ = edit.remove_face(face as u32),
+    }
+}
+
+/// Holds what was prepared of a mesh against the same mesh without the numbers of faces that were removed: these leave no trace.
+fn hold_compacted(
+    method: &Method,
+    edited: &Prepared,
+    model: &Model,
+    options: PlanOptions,
+    what: &str,
+) {
+    let compacted = Model::new(model.mesh().clone().compacted());
+    let fresh = method.prepare_with(&compacted, options, &Database::default());
+    let fresh = fresh.expect("it draws the model");
+    let [own, right] = [edited, &fresh].map(all_places);
+    let [from, to] = [model, &compacted].map(|model| model.mesh().ptex_offsets());
+    let there = (0..model.mesh().face_count()).filter(|&face| !model.mesh().is_removed(face));
+    let of_fresh = fresh.controls(compacted.positions());
+    let of_edited = edited.controls(model.positions());
+    let all = compacted.mesh().ptex_count() as u32;
+    let mut drawn = 0;
+    for (now, before) in there.enumerate() {
+        for i in 0..to.get(now + 1).copied().unwrap_or(all) - to[now] {
+            let patches = |all: &[Vec<(usize, usize)>], ptex: u32| {
+                all.get(ptex as usize).cloned().unwrap_or_default()
+            };
+            let own = patches(&own, from[before] + i);
+            let right = patches(&right, to[now] + i);
+            assert_eq!(own.len(), right.len(), "{what}: face {before}");
+            for (&(pass, patch), (other, at)) in own.iter().zip(right) {
+                let own = seen(&edited.passes[pass], &of_edited, patch);
+                let right = seen(&fresh.passes[other], &of_fresh, at);
+                assert!(own == right, "{what}: face {before}");
+                drawn += 1;
+            }
+        }
+    }
+    let all = own.iter().map(Vec::len).sum::<usize>();
+    assert_eq!(drawn, all, "{what}: removed faces are not drawn");
+}
+
+/// Where each ptex face is drawn: its passes and patches, of which there are several where a method cuts faces.
+fn all_places(prepared: &Prepared) -> Vec<Vec<(usize, usize)>> {
+    let mut places: Vec<Vec<(usize, usize)>> = Vec::new();
     for (number, pass) in prepared.passes.iter().enumerate() {
         for patch in (0..pass.patches.len()).filter(|&patch| !pass.is_vacant(patch)) {
             let ptex = pass.patches[patch].ptex as usize;
-            places.resize(places.len().max(ptex + 1), None);
-            assert!(
-                places[ptex].replace((number, patch)).is_none(),
-                "it is drawn once"
-            );
+            places.resize(places.len().max(ptex + 1), Vec::new());
+            places[ptex].push((number, patch));
         }
     }
     places
+}
+
+/// The same of methods that do not.
+fn places(prepared: &Prepared) -> Vec<Option<(usize, usize)>> {
+    let once = |places: Vec<(usize, usize)>| {
+        assert!(places.len() < 2, "it is drawn once");
+        places.first().copied()
+    };
+    all_places(prepared).into_iter().map(once).collect()
 }
 
 fn bits(point: SurfacePoint) -> [u32; 6] {
@@ -185,9 +316,12 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
             let mut model = Model::new(under(&mesh, boundary, creasing));
             let editable = in_place().prepare_editable(&model, shallow(), &database);
             let mut editable = editable.expect("sound options");
-            for number in 0..8 {
+            for number in 0..12 {
                 let mut edit = model.mesh().edit();
-                (0..1 + number % 4).for_each(|_| step(&mut edit, &model, &mut random));
+                match number % 2 {
+                    0 => (0..1 + number % 4).for_each(|_| step(&mut edit, &model, &mut random)),
+                    _ => reshape(&mut edit, &model, &mut random, [400; 2]),
+                }
                 let changes = model.apply(&edit).expect("all of it is there");
                 let update = editable
                     .update(&model, &changes, &database)
@@ -210,6 +344,8 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
                 );
                 assert!(editable.prepared().is_of(&model), "{what}");
             }
+            let what = format!("{name} {boundary:?}");
+            hold_compacted(in_place(), editable.prepared(), &model, shallow(), &what);
         }
     }
     assert!(
@@ -231,7 +367,10 @@ proptest! {
         let mut editable = editable.expect("sound options");
         for number in 0..6 {
             let mut edit = model.mesh().edit();
-            (0..1 + number % 3).for_each(|_| step(&mut edit, &model, &mut random));
+            match number % 2 {
+                0 => (0..1 + number % 3).for_each(|_| step(&mut edit, &model, &mut random)),
+                _ => reshape(&mut edit, &model, &mut random, [200; 2]),
+            }
             let changes = model.apply(&edit).expect("all of it is there");
             editable.update(&model, &changes, &database).expect("it goes");
             let fresh = in_place().prepare_with(&model, shallow(), &database);
@@ -241,85 +380,125 @@ proptest! {
     }
 }
 
-/// So many edits in a run by hand: `HULLFORM_EDITS=10000`, where every one is held against a fresh preparation.
+/// The words of what was prepared.
+fn words(prepared: &Prepared) -> usize {
+    let words = |pass: &Pass| {
+        let own = pass.tables.iter().map(|table| table.len());
+        pass.controls.len() + own.sum::<usize>()
+    };
+    prepared.passes.iter().map(words).sum()
+}
+
+/// So many edits in a run by hand: `HULLFORM_EDITS=10000`. Each is held against a fresh preparation: whether the same faces are drawn by as many points, and at the faces that it
+/// influences and some others every bit of the surface; of all faces after every hundredth, and at the end.
 #[test]
 fn after_many_edits_of_two_thousand_faces_nothing_differs_and_nothing_has_grown_but_plans() {
     let wanted = std::env::var("HULLFORM_EDITS").ok();
     let edits: u32 = wanted
         .as_ref()
         .map_or(60, |edits| edits.parse().expect("a number"));
-    let every = if wanted.is_some() { 1 } else { 20 };
+    let every = if wanted.is_some() { 1 } else { 10 };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.expect("a thread").install(|| edit_many(edits, every));
+}
+
+fn edit_many(edits: u32, every: u32) {
     let mut database = Database::default();
-    let mesh = sheet(45, 45);
-    let mut model = Model::new(mesh);
+    let mut model = Model::new(sheet(45, 45));
+    let most = [model.mesh().face_count(), model.mesh().vertex_count() + 200];
     let editable = in_place().prepare_editable(&model, shallow(), &database);
     let mut editable = editable.expect("sound options");
-    let capacities: Vec<usize> = editable
-        .prepared()
-        .passes
-        .iter()
-        .map(|pass| pass.patches.len())
-        .collect();
-    let controls = |editable: &Editable| -> usize {
-        editable
-            .prepared()
-            .passes
-            .iter()
-            .map(|pass| pass.controls.len())
-            .sum()
-    };
-    let before = controls(&editable);
     let mut random = Random(2000);
-    let (mut whole, mut touched) = (0, 0);
+    let (mut whole, mut touched, mut shaped) = (0, 0, 0);
+    let started = Instant::now();
     for number in 0..edits {
         if number % 1000 == 999 {
             // What nobody uses goes, and all plans are built once more.
             database = Database::default();
         }
         let mut edit = model.mesh().edit();
-        step(&mut edit, &model, &mut random);
-        // No more creases than a model has, so that smooth places come back.
-        if let Some(crease) = model.mesh().creases().get(400) {
-            edit.crease(crease.vertices[0], crease.vertices[1], 0.0);
+        match random.below(2) {
+            0 => step(&mut edit, &model, &mut random),
+            _ => reshape(&mut edit, &model, &mut random, most),
         }
         let changes = model.apply(&edit).expect("all of it is there");
-        let update = editable
+        // No more creases than a model has, so that smooth places come back.
+        let crease = model
+            .mesh()
+            .creases()
+            .get(400)
+            .map(|crease| crease.vertices);
+        let mut update = editable
             .update(&model, &changes, &database)
             .expect("it goes");
+        let mut influenced = changes.faces().to_vec();
+        if let Some([a, b]) = crease {
+            let mut edit = model.mesh().edit();
+            edit.crease(a, b, 0.0);
+            let changes = model.apply(&edit).expect("it is there");
+            update = editable
+                .update(&model, &changes, &database)
+                .expect("it goes");
+            influenced.extend(changes.faces());
+        }
         whole += u32::from(update.is_whole);
-        touched += changes.faces().len();
-        if number % every == every - 1 || number + 1 == edits {
-            let fresh = in_place()
-                .prepare_with(&model, shallow(), &database)
-                .expect("sound options");
-            // All of it from time to time, else what the edit influences and some of the rest.
-            let all = number % 500 == 499 || number + 1 == edits || every > 1;
-            let near =
-                |ptex: u32| all || changes.faces().contains(&ptex) || ptex % 97 == number % 97;
-            hold(
-                editable.prepared(),
-                &fresh,
-                &model,
-                &format!("{number}: {edit:?}"),
-                near,
-            );
+        shaped += u32::from(changes.is_reconnected());
+        touched += influenced.len();
+        let is_last = number + 1 == edits;
+        if number % every == every - 1 || is_last {
+            let fresh = in_place().prepare_with(&model, shallow(), &database);
+            let fresh = fresh.expect("sound options");
+            let all = number % 100 == 99 || is_last;
+            let offsets = model.mesh().ptex_offsets();
+            let near: std::collections::HashSet<u32> = influenced
+                .iter()
+                .flat_map(|&face| {
+                    let n = model.mesh().face(face as usize).len() as u32;
+                    offsets[face as usize]..offsets[face as usize] + n
+                })
+                .collect();
+            let sample = random.below(97);
+            let what = format!("{number}: {edit:?}");
+            hold(editable.prepared(), &fresh, &model, &what, |ptex| {
+                all || near.contains(&ptex) || ptex % 97 == sample
+            });
+        }
+        if number % 500 == 499 {
+            println!("{} edits after {:?}", number + 1, started.elapsed());
         }
     }
+    hold_compacted(
+        in_place(),
+        editable.prepared(),
+        &model,
+        shallow(),
+        "at the end",
+    );
+    let faces = (0..model.mesh().face_count()).filter(|&face| !model.mesh().is_removed(face));
+    let (faces, grown) = (faces.count(), words(editable.prepared()));
     println!(
-        "{edits} edits: {touched} faces, {whole} times all anew, {before} controls and now {}",
-        controls(&editable)
+        "{edits} edits, {shaped} of faces: {touched} faces planned again, {whole} times all anew; {faces} faces of {}, {} vertices, {grown} words",
+        model.mesh().face_count(),
+        model.mesh().vertex_count(),
     );
     assert!(
         touched < 40 * edits as usize,
         "what is far away is left alone"
     );
-    let passes = &editable.prepared().passes;
-    if whole == 0 {
-        assert!(
-            passes.iter().map(|pass| pass.patches.len()).eq(capacities),
-            "patches take each other's slots"
-        );
-    }
+    assert!(
+        model.mesh().vertex_count() <= most[1],
+        "vertices are used again"
+    );
+    // A face finds the number of another of as many corners, or else there is none to spare.
+    assert!(model.mesh().face_count() < 4 * most[0]);
+    editable.renew(&model, &database).expect("it goes");
+    let fresh = in_place().prepare_editable(&model, shallow(), &database);
+    let fresh = fresh.expect("sound options");
+    assert_eq!(
+        words(editable.prepared()),
+        words(fresh.prepared()),
+        "nothing is left behind"
+    );
 }
 
 /// A sheet of quads with an n-gon and a pole in it.
@@ -382,6 +561,52 @@ fn methods_that_cannot_edit_in_place_say_so_and_prepare_all_anew() {
     }
 }
 
+/// Whatever prepares all anew knows of faces that were removed: in quads and in triangles, with holes between them.
+#[test]
+fn all_methods_draw_what_is_left_when_faces_were_removed() {
+    let quads = builtin("creased-torus").expect("it is built in");
+    let quads = quads.with_scheme(Scheme::CatmullClark);
+    let triangles = triangulated(
+        &builtin("sheet").expect("it is built in"),
+        Triangulation::Fan,
+    );
+    let triangles = triangles.expect("a sound mesh");
+    let of = |scheme: Scheme| triangles.clone().with_scheme(scheme);
+    let meshes = [quads, of(Scheme::Loop), of(Scheme::LoopStam)];
+    let mut drawn = 0;
+    for mesh in meshes {
+        let mesh = mesh.expect("a sound mesh");
+        for method in METHODS {
+            let mut model = Model::new(mesh.clone());
+            if method.check(mesh.options().scheme).is_err() {
+                continue;
+            }
+            let corners = mesh.face(5).to_vec();
+            let mut edit = model.mesh().edit();
+            edit.hole(9, true);
+            // Some methods know no creases.
+            for crease in mesh.creases() {
+                edit.crease(crease.vertices[0], crease.vertices[1], 0.0);
+            }
+            model.apply(&edit).expect("all of it is there");
+            let mut edit = model.mesh().edit();
+            edit.remove_face(1)
+                .remove_face(5)
+                .remove_face(7)
+                .add_face(&corners);
+            let changes = model.apply(&edit).expect("all of it is there");
+            assert_eq!(changes.added(), [1]);
+            let Ok(prepared) = method.prepare(&model, shallow()) else {
+                continue;
+            };
+            let what = format!("{} {}", method.name, mesh.options().scheme);
+            hold_compacted(method, &prepared, &model, shallow(), &what);
+            drawn += 1;
+        }
+    }
+    assert!(drawn >= METHODS.len(), "most draw them: {drawn}");
+}
+
 #[test]
 fn changes_of_another_model_are_refused_and_one_left_out_prepares_all_anew() {
     let database = Database::default();
@@ -421,9 +646,8 @@ fn run_time() -> Option<u64> {
     counts.split_whitespace().next()?.parse().ok()
 }
 
-/// One crease of a model of thousands of faces: a few faces are planned again. `HULLFORM_TIMES=1` prints what that takes on one thread.
-#[test]
-fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
+/// One edit of a model of thousands of faces: a few faces are planned again. `HULLFORM_TIMES=1` prints what that takes on one thread, and what of it the mesh and its topology.
+fn takes_its_surroundings_alone(what: &str, change: impl Fn(&mut Edit, &Model, u32) + Sync) {
     const EDITS: u32 = 40;
     let Some(mesh) = common::model("armorguy") else {
         return;
@@ -434,35 +658,34 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
     let editable = in_place().prepare_editable(&model, options, &database);
     let mut editable = editable.expect("sound options");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let mut random = Random(3);
     let plans = database.len();
-    let (mut fastest, mut faces, mut words) = (f64::INFINITY, 0, 0);
-    let mut one = || {
-        let edge = random.below(model.topology().edge_count());
-        let [a, b] = model.topology().edges()[edge as usize].vertices;
+    let (mut applied, mut faces, mut words) = (0, 0, 0);
+    let mut one = |number: u32| {
         let mut edit = model.mesh().edit();
-        edit.crease(a, b, 1.0 + 0.01 * random.below(300) as f32);
-        let started = Instant::now();
-        let changes = model.apply(&edit).expect("there is such an edge");
+        change(&mut edit, &model, number);
+        let before = run_time();
+        let changes = model.apply(&edit).expect("all of it is there");
+        applied += run_time()
+            .zip(before)
+            .map_or(0, |(now, before)| now - before);
         let update = editable
             .update(&model, &changes, &database)
             .expect("it goes");
-        fastest = fastest.min(started.elapsed().as_secs_f64());
         assert!(!update.is_whole && changes.faces().len() < 100);
         faces += changes.faces().len();
         words += update.words();
     };
     let ran = pool.expect("a thread").install(|| {
         let before = run_time();
-        (0..EDITS).for_each(|_| one());
+        (0..EDITS).for_each(&mut one);
         Some((run_time()? - before?) as f64 / 1e6)
     });
     let each = |all: usize| all as f64 / f64::from(EDITS);
     if std::env::var_os("HULLFORM_TIMES").is_some() {
         println!(
-            "an edit: {:?} ms of one thread, {} ms for the fastest; {} faces, {} plans, {} words",
+            "{what}: {:?} ms of one thread, {} of them the mesh and its topology; {} faces, {} plans, {} words",
             ran.map(|ran| ran / f64::from(EDITS)),
-            1e3 * fastest,
+            applied as f64 / 1e6 / f64::from(EDITS),
             each(faces),
             each(database.len() - plans),
             each(words),
@@ -471,7 +694,36 @@ fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
     assert!(each(words) < 20_000.0, "what is uploaded is little");
     let fresh = in_place().prepare_with(&model, options, &database);
     let fresh = fresh.expect("sound options");
-    hold(editable.prepared(), &fresh, &model, "creases", |ptex| {
+    hold(editable.prepared(), &fresh, &model, what, |ptex| {
         ptex % 7 == 0
+    });
+}
+
+#[test]
+fn one_crease_of_a_large_model_takes_its_surroundings_alone() {
+    takes_its_surroundings_alone("a crease", |edit, model, number| {
+        let mut random = Random(number.into());
+        let edge = random.below(model.topology().edge_count());
+        let [a, b] = model.topology().edges()[edge as usize].vertices;
+        edit.crease(a, b, 1.0 + 0.01 * random.below(300) as f32);
+    });
+}
+
+/// Removed, and put back as another one beside it goes.
+#[test]
+fn one_face_of_a_large_model_takes_its_surroundings_alone() {
+    takes_its_surroundings_alone("a face", |edit, model, number| {
+        let mut random = Random(number.into());
+        let face = random.below(model.mesh().face_count()) as usize;
+        let vertices = model.mesh().face(face);
+        match number % 2 {
+            _ if vertices.is_empty() => {}
+            0 => _ = edit.remove_face(face as u32),
+            _ => {
+                _ = edit
+                    .remove_face(face as u32)
+                    .add_face(&[vertices[0], vertices[1], vertices[2]])
+            }
+        }
     });
 }

@@ -145,11 +145,6 @@ pub enum Misuse {
         "the control points of this draw list were not cached: cmd_cache comes before it, with a pose that has a cache"
     )]
     NotCached,
-    /// Tables that are to be edited, and a cache, of which any edit may change all.
-    #[error(
-        "tables that are edited keep control points in the ring; with a cache, make tables, poses and slots anew after an edit"
-    )]
-    EditedCache,
     /// After an edit patches need more batches than the frame slot has counters for.
     #[error(
         "a draw list has {needed} batches that use the ring, in all rounds, and its frame slot counts {given}: make the slot anew, or with a larger ring"

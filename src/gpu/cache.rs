@@ -6,6 +6,8 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::DrawList;
 use crate::gpu::barrier::cmd_make_visible;
+use crate::gpu::cached::Cache;
+use crate::gpu::kept_cache::KeptCache;
 use crate::gpu::points::compute_pipeline;
 use crate::gpu::sets::STAGES;
 use crate::gpu::shaders::{Embedded, Modules};
@@ -100,6 +102,27 @@ fn module(pass: &Pass) -> String {
     format!("{}.comp", pass.shader)
 }
 
+impl Cache {
+    /// Takes down that the points of the levels that there are are those of the tables now; tells which of them are to be computed again. Where that is not known none are
+    /// there.
+    fn edited(&mut self, tables: &Tables) -> Vec<(usize, Jobs)> {
+        let Some(kept) = tables.kept_cache() else {
+            return Vec::new();
+        };
+        let before = self.state.replace(kept.state());
+        let (Some(level), Some(before)) = (self.level, before) else {
+            self.level = None;
+            return Vec::new();
+        };
+        let Some(jobs) = kept.since(before) else {
+            self.level = None;
+            return Vec::new();
+        };
+        let known = jobs.into_iter().filter(|&(_, of, _)| of <= level);
+        known.map(|(pass, _, jobs)| (pass, jobs)).collect()
+    }
+}
+
 impl Pose {
     /// Says that control vertices were written on the device: what was cached of them is of no use any more.
     pub fn positions_changed(&mut self) {
@@ -116,7 +139,8 @@ impl Pose {
     }
 
     /// Records the computation of all control points that a list is drawn with and that are not in the cache already: for a list of the same level or a
-    /// lower one, and positions that have not changed, none; for one of a higher level, those of the levels between. Returns how many are computed.
+    /// lower one, and positions that have not changed, none; for one of a higher level, those of the levels between; after an edit of the tables those that it has
+    /// changed. Returns how many are computed.
     ///
     /// They count as cached from here on: if the commands are never executed, say so by [`forget_cache`](Self::forget_cache).
     ///
@@ -152,23 +176,25 @@ impl Pose {
         if !shaders.eq(pipelines.shaders.iter().copied()) {
             return Err(Error::Misuse(Misuse::OtherPipelines));
         }
+        if !cache.has_room(tables) {
+            return Err(Error::Misuse(Misuse::NotCached));
+        }
+        let edited = cache.edited(tables);
         let first = cache.level.map_or(0, |level| level + 1);
-        if needed < first {
+        let new = first as usize..(needed as usize + 1).max(first as usize);
+        let jobs = (0..).zip(&points.passes).flat_map(|(pass, own)| {
+            let levels = &own.jobs[new.clone()];
+            levels.iter().map(move |&jobs| (pass, jobs))
+        });
+        let jobs = jobs.chain(edited).filter(|(_, jobs)| jobs.count > 0);
+        let jobs: Vec<(usize, Jobs)> = jobs.collect();
+        cache.level = Some(needed.max(cache.level.unwrap_or(0)));
+        if jobs.is_empty() {
             return Ok(0);
         }
-        cache.level = Some(needed);
-        let jobs: Vec<(usize, Jobs)> = (0..)
-            .zip(&points.passes)
-            .flat_map(|(pass, own)| {
-                let levels = &own.jobs[first as usize..=needed as usize];
-                levels.iter().map(move |&jobs| (pass, jobs))
-            })
-            .filter(|(_, jobs)| jobs.count > 0)
-            .collect();
         // SAFETY: this function's contract.
         unsafe { self.cmd_fill(device, cmd, layout, pipelines, tables, &jobs) };
-        let known = first.checked_sub(1).map_or(0, |level| points.count(level));
-        Ok(points.count(needed) - known)
+        Ok(jobs.iter().map(|(_, jobs)| jobs.count).sum())
     }
 
     /// # Safety
@@ -226,11 +252,13 @@ impl Pose {
 
     /// # Errors
     /// [`Misuse::NotCached`] where the cache has not all points that a list is drawn with.
-    pub(super) fn check_cached(&self, list: &DrawList) -> Result<()> {
+    pub(super) fn check_cached(&self, tables: &Tables, list: &DrawList) -> Result<()> {
         let Some(needed) = list.cached_level() else {
             return Ok(());
         };
-        let level = self.cache.as_ref().and_then(|cache| cache.level);
+        let state = tables.kept_cache().map(KeptCache::state);
+        let cache = self.cache.as_ref().filter(|cache| cache.state == state);
+        let level = cache.and_then(|cache| cache.level);
         if level.is_some_and(|level| needed <= level) {
             return Ok(());
         }

@@ -12,7 +12,8 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::Decides;
 use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::Bound;
-use crate::method::{Pass, Prepared, Table, Update, deciding_tables};
+use crate::gpu::kept_cache::CacheWords;
+use crate::method::{CachedPoints, Pass, Prepared, Table, Update, deciding_tables};
 
 /// Writes that are no farther apart than this are one: a command costs more than a few words.
 const NEAR: usize = 64;
@@ -30,8 +31,10 @@ pub(super) struct Edited {
     pending: Vec<Vec<(usize, Range<usize>)>>,
 }
 
+/// Where the tables of cached points stand.
+const CACHED: usize = 3 + crate::abi::TABLES as usize;
 /// Where the tables stand that the device decides by.
-pub(super) const DECIDING: usize = 3 + (crate::abi::TABLES + crate::abi::CACHED_TABLES) as usize;
+const DECIDING: usize = CACHED + crate::abi::CACHED_TABLES as usize;
 
 /// Refuses an update that is not for these tables, or cannot be carried out in place.
 ///
@@ -46,12 +49,22 @@ pub(super) fn check(own: &Prepared, edited: &Prepared, update: &Update) -> Resul
 }
 
 impl Edited {
-    /// Takes down what an update has changed in `prepared`, if all of it has room; else nothing, and tells so.
-    pub fn take(&mut self, prepared: &Prepared, update: &Update, decides: Decides) -> bool {
+    /// Takes down what an update has changed in `prepared` and in the tables of cached points, if all of it has room; else nothing, and tells so.
+    pub fn take(
+        &mut self,
+        prepared: &Prepared,
+        update: &Update,
+        cache: CacheWords,
+        decides: Decides,
+    ) -> bool {
         let changes = update.passes.iter().map(|change| change.ranges().collect());
         let mut changes: Vec<Vec<(usize, Range<usize>)>> = changes.collect();
         // Nothing is said of passes where nothing has changed.
         changes.resize(prepared.passes.len(), Vec::new());
+        for (changes, cached) in changes.iter_mut().zip(cache) {
+            let cached = cached.into_iter();
+            changes.extend(cached.map(|(table, range)| (CACHED + table, range)));
+        }
         let mut deciding = Vec::new();
         if decides == Decides::Device {
             for (number, pass) in prepared.passes.iter().enumerate() {
@@ -81,13 +94,13 @@ impl Edited {
     /// Records the writes that are due, after what earlier commands of the queue still read, and before whatever reads next in the stages `readers`.
     ///
     /// # Safety
-    /// `cmd` is recording on `device`, outside of a render pass; the buffers are those of `bound`, and `prepared` is what they are of.
+    /// `cmd` is recording on `device`, outside of a render pass; the buffers are those of `bound`, and what was prepared and cached is what they are of.
     pub unsafe fn cmd_write(
         &mut self,
         device: &ash::Device,
         cmd: vk::CommandBuffer,
         bound: &Bound,
-        prepared: &Prepared,
+        (prepared, points): (&Prepared, Option<&CachedPoints>),
         readers: vk::PipelineStageFlags,
     ) {
         let pending = std::mem::take(&mut self.pending);
@@ -104,10 +117,14 @@ impl Edited {
         for (number, pending) in pending.into_iter().enumerate() {
             let buffer = bound.buffer(self.buffers[number]).raw();
             for (table, range) in merged(pending) {
-                let words = match table.checked_sub(DECIDING) {
-                    Some(deciding) => &self.deciding[number][deciding][range.clone()],
-                    None => &words_of(&prepared.passes[number], table)[range.clone()],
+                let words = match (table.checked_sub(DECIDING), table.checked_sub(CACHED)) {
+                    (Some(deciding), _) => &self.deciding[number][deciding],
+                    (None, Some(cached)) => {
+                        points.map_or(&[][..], |points| &points.passes[number].tables[cached])
+                    }
+                    (None, None) => words_of(&prepared.passes[number], table),
                 };
+                let words = &words[range.clone()];
                 let first = 4 * (self.rooms[number][table].start + range.start) as u64;
                 let parts = bytemuck::cast_slice(words).chunks(MOST_UPDATED);
                 for (part, bytes) in (0u64..).zip(parts) {

@@ -99,7 +99,7 @@ impl Drawing<'_> {
         slot.check_list(tables, batch.list())?;
         slot.check_views(views, batch)?;
         slot.check_decided(views, batch.list())?;
-        pose.check_cached(batch.list())?;
+        pose.check_cached(tables, batch.list())?;
         let (count, eyes) = (views.len() as u32, pipelines.eyes());
         if count % eyes != 0 {
             let views = count;
@@ -145,7 +145,7 @@ impl Drawing<'_> {
     /// Whether the pose has all control points that a list is drawn with, so that [`cmd_cache`](Pose::cmd_cache) would record nothing; true where the
     /// ring has them.
     pub fn is_cached(&self, list: &DrawList) -> bool {
-        self.pose.check_cached(list).is_ok()
+        self.pose.check_cached(self.tables, list).is_ok()
     }
 
     /// # Safety

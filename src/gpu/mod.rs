@@ -16,12 +16,14 @@ pub mod driver;
 pub mod features;
 mod frame_slot;
 mod indirect;
+mod kept_cache;
 mod layout;
 pub mod memory;
 mod patterns;
 mod pipeline;
 mod points;
 mod pose;
+mod retired;
 pub mod ring;
 mod sets;
 pub mod shaders;
@@ -51,9 +53,10 @@ pub use memory::{Memory, MemoryBlock, MemoryRequest};
 pub use pipeline::Pipelines;
 pub use points::PointPipeline;
 pub use pose::Pose;
+pub use retired::Retired;
 pub use staging::Handover;
 pub use surface::TessellatedSurface;
-pub use tables::{Retired, Tables};
+pub use tables::Tables;
 pub use target::{
     Attachments, DepthBias, Fill, Fragment, OwnLayout, PipelineOptions, Shading, Target,
 };

@@ -8,12 +8,31 @@ use glam::Vec3;
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Residence, SurfaceOptions};
-use crate::gpu::barrier::cmd_make_visible;
+use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::cached::Cache;
 use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
-use crate::gpu::{Layout, Memory, Tables};
+use crate::gpu::{Layout, Memory, Retired, Tables};
+use crate::mesh::{ChangeSet, Model};
 use crate::method::{Controls, Prepared};
+
+/// A control vertex: three floats.
+const VERTEX_BYTES: usize = size_of::<[f32; 3]>();
+
+/// So many vertices more than an eighth may be added before a pose is made anew.
+const SPARE: usize = 64;
+
+/// Vertices that follow one another, by the first.
+fn runs(moved: BTreeMap<u32, [f32; 3]>) -> Vec<(u32, Vec<[f32; 3]>)> {
+    let mut runs: Vec<(u32, Vec<[f32; 3]>)> = Vec::new();
+    for (vertex, position) in moved {
+        match runs.last_mut() {
+            Some((first, run)) if *first + run.len() as u32 == vertex => run.push(position),
+            _ => runs.push((vertex, vec![position])),
+        }
+    }
+    runs
+}
 
 /// Control vertices and the points that are computed from them, on the device. It borrows nothing; the owner calls [`Pose::destroy`].
 #[derive(Debug)]
@@ -24,6 +43,9 @@ pub struct Pose {
     staging: Staging,
     positions: usize,
     points: usize,
+    /// How many control vertices its buffer holds.
+    room: usize,
+    residence: Residence,
     readers: vk::PipelineStageFlags,
     /// Vertices that were moved since the last upload.
     moved: BTreeMap<u32, [f32; 3]>,
@@ -61,6 +83,11 @@ impl Pose {
             staging: Staging::default(),
             positions: 0,
             points: 0,
+            room: match tables.is_editable() {
+                true => positions.len() + positions.len() / 8 + SPARE,
+                false => positions.len(),
+            },
+            residence: options.residence,
             readers: layout.readers(),
             moved: BTreeMap::new(),
             cache: cached.then(|| Cache::new(tables)).flatten(),
@@ -90,7 +117,8 @@ impl Pose {
         positions: &[Vec3],
     ) -> Result<()> {
         let Controls { vertices, points } = prepared.controls(positions.to_vec());
-        let vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.to_array()).collect();
+        let mut vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.to_array()).collect();
+        vertices.resize(self.room, [0.0; 3]);
         let vertices: &[u8] = bytemuck::cast_slice(&vertices);
         let points: &[u8] = bytemuck::cast_slice(&points);
         let bound = &mut self.bound;
@@ -129,9 +157,13 @@ impl Pose {
         // SAFETY: as above; vertices are the buffer's own.
         unsafe {
             cmd_make_visible(device, cmd, self.readers | transfer, transfer, write);
-            for (vertex, position) in moved {
-                let offset = u64::from(vertex) * size_of_val(&position) as u64;
-                device.cmd_update_buffer(cmd, buffer, offset, bytemuck::bytes_of(&position));
+            for (first, positions) in runs(moved) {
+                let parts = positions.chunks(MOST_UPDATED / VERTEX_BYTES);
+                for (part, positions) in (0..).zip(parts) {
+                    let vertex = first as usize + part * (MOST_UPDATED / VERTEX_BYTES);
+                    let (offset, bytes) = (vertex * VERTEX_BYTES, bytemuck::cast_slice(positions));
+                    device.cmd_update_buffer(cmd, buffer, offset as u64, bytes);
+                }
             }
             let read = vk::AccessFlags::SHADER_READ;
             cmd_make_visible(device, cmd, transfer, self.readers, read);
@@ -213,6 +245,63 @@ impl Pose {
         Ok(())
     }
 
+    /// Brings the control vertices up to an edit that the tables have been brought up to ([`Tables::edit`]): those that were moved or added, or all where the
+    /// bounding box is another one. They arrive with the next [`cmd_upload`](Self::cmd_upload), in the order of the queue, as those of [`move_vertices`](Self::move_vertices).
+    ///
+    /// A pose of tables that are edited has room for an eighth more vertices and some; where there are more, or more cached points than there is room for, larger buffers are
+    /// made, and the ones before are [`Retired`]. An engine that writes the [`position_buffer`](Self::position_buffer) itself writes another one then.
+    ///
+    /// # Errors
+    /// [`Misuse::OtherSurface`] for other tables, those of methods that compute points beforehand, and those that are not of this model; as [`Pose::new`]. Nothing has changed
+    /// then.
+    ///
+    /// # Safety
+    /// As [`Pose::new`].
+    pub unsafe fn edit(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        tables: &Tables,
+        model: &Model,
+        changes: &ChangeSet,
+    ) -> Result<Retired> {
+        let prepared = tables.prepared();
+        let is_other = self.prepared != prepared.number() || !prepared.is_of(model);
+        if is_other || prepared.points.count > 0 {
+            return Err(Error::Misuse(Misuse::OtherSurface));
+        }
+        let cache_fits = self
+            .cache
+            .as_ref()
+            .is_none_or(|cache| cache.has_room(tables));
+        if prepared.vertex_count() > self.room || !cache_fits {
+            let options = SurfaceOptions {
+                residence: self.residence,
+                ..SurfaceOptions::default()
+            };
+            let positions = model.positions();
+            // SAFETY: this function's contract.
+            let larger =
+                unsafe { Pose::new(device, allocator, layout, tables, &positions, &options)? };
+            let Pose { bound, staging, .. } = std::mem::replace(self, larger);
+            return Ok(Retired::of(bound, staging));
+        }
+        if changes.is_placed_anew() || !changes.moved().is_empty() {
+            self.positions_changed();
+        }
+        let place = |vertex: u32| (vertex, model.position(vertex).to_array());
+        match changes.is_placed_anew() {
+            true => self
+                .moved
+                .extend((0..prepared.vertex_count() as u32).map(place)),
+            false => self
+                .moved
+                .extend(changes.moved().iter().copied().map(place)),
+        }
+        Ok(Retired::default())
+    }
+
     /// The control vertices on the device, three floats each, in local units: a storage buffer that is also a copy's target.
     ///
     /// Whoever writes it waits for earlier frames' vertex and control shaders, and makes the writes visible to `SHADER_READ` in the
@@ -223,12 +312,21 @@ impl Pose {
     }
 
     /// # Errors
-    /// [`Misuse::OtherSurface`] for tables that it was not made for.
+    /// [`Misuse::OtherSurface`] for tables that it was not made for; [`Misuse::Count`] where an edit has added more vertices than it has room for, and
+    /// [`edit`](Self::edit) was left out.
     pub(super) fn check(&self, tables: &Tables) -> Result<()> {
-        if self.prepared == tables.prepared().number() {
-            return Ok(());
+        if self.prepared != tables.prepared().number() {
+            return Err(Error::Misuse(Misuse::OtherSurface));
         }
-        Err(Error::Misuse(Misuse::OtherSurface))
+        let (given, expected) = (self.room, tables.prepared().vertex_count());
+        if given < expected {
+            return Err(Error::Misuse(Misuse::Count {
+                what: "control vertices of a pose",
+                given,
+                expected,
+            }));
+        }
+        Ok(())
     }
 
     /// The bytes on the device, those aside that an upload is staged in.
@@ -251,11 +349,7 @@ impl Pose {
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
     pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
-        if let Some(staging) = self.staging.into_buffer() {
-            // SAFETY: this function's contract.
-            unsafe { staging.destroy(device, allocator) };
-        }
-        // SAFETY: as above.
-        unsafe { self.bound.destroy(device, allocator) };
+        // SAFETY: this function's contract.
+        unsafe { Retired::of(self.bound, self.staging).destroy(device, allocator) };
     }
 }

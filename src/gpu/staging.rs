@@ -52,11 +52,11 @@ impl Staging {
         self.buffer.insert(buffer).write(0, &bytes)
     }
 
-    /// Replaces what will be copied to a buffer by as many bytes.
+    /// Replaces what will be copied to a buffer, or the beginning of it.
     pub fn replace(&mut self, number: usize, bytes: &[u8]) -> Result<()> {
         let copy = self.copies.iter().find(|(to, _)| *to == number);
         let copy = copy.expect("only what was added is replaced").1;
-        debug_assert_eq!(bytes.len() as u64, copy.size);
+        debug_assert!(bytes.len() as u64 <= copy.size);
         let buffer = self.buffer.as_mut();
         let buffer = buffer.expect("it is filled as long as the surface lives");
         self.changed = true;

@@ -12,7 +12,7 @@ use crate::gpu::{
     Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Handover,
     Layout, Memory, Pipelines, PointPipeline, Pose, Retired, Tables, View,
 };
-use crate::mesh::Model;
+use crate::mesh::{ChangeSet, Model};
 use crate::method::{CachedPoints, DepthTags, Editable, Prepared, Update};
 
 /// A prepared model on the device: [`Tables`], a [`Pose`] and a [`FrameSlot`] in one. It borrows nothing; the owner calls
@@ -243,7 +243,8 @@ impl TessellatedSurface {
         unsafe { self.tables.finish_upload(device, allocator) };
     }
 
-    /// As [`Tables::edit`]: the next [`cmd_upload`](Self::cmd_upload) brings the edit to the device.
+    /// As [`Tables::edit`]: the next [`cmd_upload`](Self::cmd_upload) brings the edit to the device. Where vertices were added or moved, or points are cached,
+    /// [`edit_pose`](Self::edit_pose) comes behind it.
     ///
     /// # Errors
     /// As there.
@@ -261,6 +262,26 @@ impl TessellatedSurface {
         let tables = &mut self.tables;
         // SAFETY: this function's contract.
         unsafe { tables.edit(device, allocator, layout, editable, update) }
+    }
+
+    /// As [`Pose::edit`], after [`edit`](Self::edit): vertices that an edit has moved or added.
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn edit_pose(
+        &mut self,
+        device: &ash::Device,
+        allocator: &mut dyn Memory,
+        layout: &Layout,
+        model: &Model,
+        changes: &ChangeSet,
+    ) -> Result<Retired> {
+        let (tables, pose) = (&self.tables, &mut self.pose);
+        // SAFETY: this function's contract.
+        unsafe { pose.edit(device, allocator, layout, tables, model, changes) }
     }
 
     /// As [`Pose::move_vertices`].

@@ -8,8 +8,9 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Decides, Residence, SurfaceOptions};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::changes::{self, Edited};
+use crate::gpu::kept_cache::KeptCache;
 use crate::gpu::staging::{Handover, Staging, cmd_acquire, cmd_copy, cmd_copy_and_release};
-use crate::gpu::{Layout, Memory};
+use crate::gpu::{Layout, Memory, Retired};
 use crate::method::{CachedPoints, Editable, Prepared, Table, Update, deciding_tables};
 
 /// Where the bases of the next pass stand in their buffer: what uniform buffers have to be aligned to at most (Vulkan spec, "Required Limits",
@@ -30,31 +31,8 @@ pub struct Tables {
     options: SurfaceOptions,
     /// None where nothing is edited.
     edited: Option<Edited>,
-}
-
-/// What an edit has replaced on the device. The frames that were recorded before may still read it: the owner calls [`Retired::destroy`] when they have ended.
-#[derive(Debug, Default)]
-#[must_use = "it is destroyed when the frames that were recorded before have ended"]
-pub struct Retired {
-    tables: Option<Box<Tables>>,
-}
-
-impl Retired {
-    /// Whether there is nothing to be destroyed, as after most edits.
-    pub fn is_empty(&self) -> bool {
-        self.tables.is_none()
-    }
-
-    /// Destroys it.
-    ///
-    /// # Safety
-    /// As [`Tables::destroy`]: no submitted command still uses the tables as they were before the edit, and no recorded one will be submitted.
-    pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
-        if let Some(tables) = self.tables {
-            // SAFETY: this function's contract.
-            unsafe { tables.destroy(device, allocator) };
-        }
-    }
+    /// None where no cache is edited.
+    kept_cache: Option<KeptCache>,
 }
 
 impl Tables {
@@ -79,7 +57,7 @@ impl Tables {
     /// The same of what can be edited, with room for what edits append: a quarter more.
     ///
     /// # Errors
-    /// As [`Tables::new`]; [`Misuse::EditedCache`] for [`Residence::Cache`].
+    /// As [`Tables::new`].
     ///
     /// # Safety
     /// As [`Tables::new`].
@@ -90,9 +68,6 @@ impl Tables {
         editable: &Editable,
         options: &SurfaceOptions,
     ) -> Result<Tables> {
-        if options.residence == Residence::Cache {
-            return Err(Error::Misuse(Misuse::EditedCache));
-        }
         let (prepared, edited) = (editable.prepared().clone(), Some(Edited::default()));
         // SAFETY: this function's contract.
         unsafe { Tables::build(device, allocator, layout, prepared, options, edited) }
@@ -118,18 +93,26 @@ impl Tables {
         editable: &Editable,
         update: &Update,
     ) -> Result<Retired> {
-        changes::check(&self.prepared, editable.prepared(), update)?;
+        let prepared = editable.prepared();
+        changes::check(&self.prepared, prepared, update)?;
         let edited = self.edited.as_mut();
         let edited = edited.ok_or(Error::Misuse(Misuse::OtherSurface))?;
-        if edited.take(editable.prepared(), update, self.options.decides) {
-            self.prepared.adopt(editable.prepared(), update);
+        let points = self.cached.as_mut().map(|(_, points)| points);
+        let cache = match self.kept_cache.as_mut().zip(points) {
+            None => Some(Vec::new()),
+            Some((kept, points)) => kept.edit(points, prepared, update),
+        };
+        let has_room =
+            cache.is_some_and(|cache| edited.take(prepared, update, cache, self.options.decides));
+        if has_room {
+            self.prepared.adopt(prepared, update);
             return Ok(Retired::default());
         }
         // SAFETY: this function's contract.
         let larger =
             unsafe { Tables::editable(device, allocator, layout, editable, &self.options)? };
-        let tables = Some(Box::new(std::mem::replace(self, larger)));
-        Ok(Retired { tables })
+        let Tables { bound, staging, .. } = std::mem::replace(self, larger);
+        Ok(Retired::of(bound, staging))
     }
 
     /// # Safety
@@ -142,12 +125,19 @@ impl Tables {
         options: &SurfaceOptions,
         edited: Option<Edited>,
     ) -> Result<Tables> {
-        let cached = (options.residence == Residence::Cache).then(|| {
+        let deepest = (options.residence == Residence::Cache).then(|| {
             let cuts = options.greatest_cuts().into_iter();
             let levels = cuts.map(|cut| options.backend.cut(cut).cached_level(&prepared));
-            let deepest = levels.max().unwrap_or(0);
-            (deepest, prepared.cached_points(deepest))
+            levels.max().unwrap_or(0)
         });
+        let kept = deepest.filter(|_| edited.is_some());
+        let kept = kept.and_then(|deepest| KeptCache::new(&prepared, deepest));
+        let (points, kept_cache) = kept.unzip();
+        let points_of = |deepest| match points {
+            Some(points) => (deepest, points),
+            None => (deepest, prepared.cached_points(deepest)),
+        };
+        let cached = deepest.map(points_of);
         let mut tables = Tables {
             prepared,
             cached,
@@ -156,6 +146,7 @@ impl Tables {
             readers: layout.readers(),
             options: *options,
             edited,
+            kept_cache,
         };
         let mut maker = Maker {
             device,
@@ -207,9 +198,12 @@ impl Tables {
             .step_by(BASES_STRIDE as usize)
             .zip(&prepared.passes)
         {
-            // On the host nobody reads them again.
+            // On the host nobody reads them again, but for those that are edited.
             let cached = cached.as_mut().and_then(Iterator::next);
-            let others = cached.map(|cached| std::mem::take(&mut cached.tables));
+            let others = cached.map(|cached| match edited {
+                None => std::mem::take(&mut cached.tables),
+                Some(_) => cached.tables.clone(),
+            });
             let mut others = others.unwrap_or_default();
             if decides == Decides::Device {
                 // Behind those of control points that are cached, be there any or not.
@@ -267,7 +261,11 @@ impl Tables {
         unsafe { cmd_copy(device, cmd, &mut self.staging, &self.bound, self.readers) };
         if let Some(edited) = &mut self.edited {
             // SAFETY: as above.
-            unsafe { edited.cmd_write(device, cmd, &self.bound, &self.prepared, self.readers) };
+            unsafe {
+                let points = self.cached.as_ref().map(|(_, points)| points);
+                let from = (&self.prepared, points);
+                edited.cmd_write(device, cmd, &self.bound, from, self.readers);
+            }
         }
     }
 
@@ -312,6 +310,11 @@ impl Tables {
         }
     }
 
+    /// Whether they are edited.
+    pub(super) fn is_editable(&self) -> bool {
+        self.edited.is_some()
+    }
+
     /// What was prepared.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
@@ -320,6 +323,11 @@ impl Tables {
     /// What poses have in their caches, and up to which plan level; None where control points are not cached.
     pub(super) fn cached(&self) -> Option<&(u32, CachedPoints)> {
         self.cached.as_ref()
+    }
+
+    /// What becomes of caches when the tables are edited; None where they are not, or where there is no cache.
+    pub(super) fn kept_cache(&self) -> Option<&KeptCache> {
+        self.kept_cache.as_ref()
     }
 
     /// What poses have in their caches, but for the tables that are on the device; None where control points are not cached.
@@ -342,11 +350,7 @@ impl Tables {
     /// # Safety
     /// `device` and `allocator` are those that made it, no submitted command still uses it, and no recorded one will be submitted.
     pub unsafe fn destroy(self, device: &ash::Device, allocator: &mut dyn Memory) {
-        if let Some(staging) = self.staging.into_buffer() {
-            // SAFETY: this function's contract.
-            unsafe { staging.destroy(device, allocator) };
-        }
-        // SAFETY: as above.
-        unsafe { self.bound.destroy(device, allocator) };
+        // SAFETY: this function's contract.
+        unsafe { Retired::of(self.bound, self.staging).destroy(device, allocator) };
     }
 }

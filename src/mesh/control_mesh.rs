@@ -13,7 +13,7 @@ use crate::mesh::creased_edges::CreasedEdges;
 use crate::mesh::faces::Faces;
 use crate::mesh::placement::{Placement, bounds};
 
-pub(super) use checks::{check_position, check_sharpness};
+pub(super) use checks::{check_face, check_position, check_sharpness};
 
 /// A sharpness of 10 or more is infinite (DeRose, Kass, Truong 1998; OpenSubdiv's `SHARPNESS_INFINITE`).
 pub const INFINITE_SHARPNESS: f32 = 10.0;
@@ -142,12 +142,17 @@ impl ControlMesh {
         self.positions.len()
     }
 
-    /// The number of faces, holes included.
+    /// The number of faces, holes and removed ones included.
     pub fn face_count(&self) -> usize {
         self.faces.len()
     }
 
-    /// The vertices of face `face`, in file order; none where there is no such face.
+    /// Whether a face was removed by an [`Edit`](crate::mesh::Edit): it keeps its number, and has no vertices.
+    pub fn is_removed(&self, face: usize) -> bool {
+        face < self.face_count() && self.face(face).is_empty()
+    }
+
+    /// The vertices of face `face`, in file order; none where there is no such face, or no more.
     pub fn face(&self, face: usize) -> &[u32] {
         self.faces.get(face)
     }
@@ -157,7 +162,7 @@ impl ControlMesh {
         self.faces.range(face)
     }
 
-    /// The vertices of every face in file order.
+    /// The vertices of every face in file order; none of those that were removed.
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         self.faces.iter()
     }
@@ -202,15 +207,17 @@ impl ControlMesh {
         Ok(self)
     }
 
-    /// The number of ptex faces: one a quad, n an n-gon; holes keep their numbers. Triangles that the scheme takes whole have one.
+    /// The number of ptex faces: one a quad, n an n-gon; holes and removed faces keep their numbers. Triangles that the scheme takes whole have one.
     pub fn ptex_count(&self) -> usize {
-        self.faces().map(|face| self.ptex_faces(face)).sum()
+        (0..self.face_count())
+            .map(|face| self.ptex_faces(face))
+            .sum()
     }
 
     /// The first ptex number of each face.
     pub fn ptex_offsets(&self) -> Vec<u32> {
         let mut next = 0;
-        self.faces()
+        (0..self.face_count())
             .map(|face| {
                 let first = next;
                 next += self.ptex_faces(face) as u32;
@@ -219,12 +226,9 @@ impl ControlMesh {
             .collect()
     }
 
-    fn ptex_faces(&self, face: &[u32]) -> usize {
-        if self.options.scheme.is_whole(face.len()) {
-            1
-        } else {
-            face.len()
-        }
+    /// The ptex faces of a face, or of one that was removed.
+    pub(crate) fn ptex_faces(&self, face: usize) -> usize {
+        self.options.scheme.ptex_faces(self.faces.corners(face))
     }
 
     /// The least and greatest corner of the bounding box of the control vertices that faces use.

@@ -1,12 +1,25 @@
 //! The faces of a mesh, which control mesh, topology and outline share.
 
-/// The vertices of faces of any arity, one face after another.
+use std::collections::BTreeMap;
+
+/// The vertices of faces of any arity, one face after another. A face that was removed has none, and keeps its number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Faces {
     /// Where each face begins, and at last where the last one ends.
     offsets: Vec<u32>,
     vertices: Vec<u32>,
     only_quads: bool,
+    /// How many corners each face had that was removed: whatever is numbered by corners keeps its numbers, and a face of as many may take its place.
+    removed: BTreeMap<u32, u32>,
+}
+
+/// What an edit makes of a face.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Slot {
+    /// The corners that a face of this number has, or had.
+    pub corners: u32,
+    /// Its vertices, as many, or none where there is no face any more.
+    pub vertices: Vec<u32>,
 }
 
 impl Faces {
@@ -17,6 +30,45 @@ impl Faces {
             offsets,
             vertices,
             only_quads,
+            removed: BTreeMap::new(),
+        }
+    }
+
+    /// These faces with others in some places, by their numbers; those from the number of faces on are new, without a gap.
+    pub fn edited(&self, slots: &BTreeMap<u32, Slot>) -> Faces {
+        let last = slots
+            .last_key_value()
+            .map_or(0, |(&face, _)| face as usize + 1);
+        let mut offsets = Vec::with_capacity(self.len().max(last) + 1);
+        let mut vertices = Vec::with_capacity(self.vertices.len());
+        let mut removed = self.removed.clone();
+        offsets.push(0);
+        let mut next = 0;
+        // What lies between two faces that change is moved as a whole.
+        let mut keep = |until: usize, offsets: &mut Vec<u32>, vertices: &mut Vec<u32>| {
+            let until = until.min(self.len());
+            if next < until {
+                let (start, end) = (self.offsets[next], self.offsets[until]);
+                let first = vertices.len() as u32;
+                let ends = &self.offsets[next + 1..=until];
+                offsets.extend(ends.iter().map(|end| end - start + first));
+                vertices.extend_from_slice(&self.vertices[start as usize..end as usize]);
+            }
+            next = until + 1;
+        };
+        for (&face, slot) in slots {
+            keep(face as usize, &mut offsets, &mut vertices);
+            vertices.extend_from_slice(&slot.vertices);
+            offsets.push(vertices.len() as u32);
+            match slot.vertices.is_empty() {
+                true => removed.insert(face, slot.corners),
+                false => removed.remove(&face),
+            };
+        }
+        keep(self.len(), &mut offsets, &mut vertices);
+        Faces {
+            removed,
+            ..Faces::new(offsets, vertices)
         }
     }
 
@@ -37,12 +89,37 @@ impl Faces {
         self.offsets.len().saturating_sub(1)
     }
 
+    /// The faces that were removed, with the corners that each had.
+    pub fn removed(&self) -> &BTreeMap<u32, u32> {
+        &self.removed
+    }
+
+    /// The corners that a face has, or had before it was removed.
+    pub fn corners(&self, face: usize) -> usize {
+        match self.range(face).len() {
+            0 => self.removed.get(&(face as u32)).map_or(0, |&n| n as usize),
+            own => own,
+        }
+    }
+
     /// Where the corners of a face stand in arrays with one entry a corner; nowhere if there is no such face.
     pub fn range(&self, face: usize) -> std::ops::Range<usize> {
         match self.offsets.get(face..) {
             Some(&[start, end, ..]) => start as usize..end as usize,
             _ => 0..0,
         }
+    }
+
+    /// Where the corners of a face without any would stand: behind those of the one before.
+    pub fn start(&self, face: usize) -> std::ops::Range<usize> {
+        let start = self.offsets.get(face).or(self.offsets.last());
+        let start = start.map_or(0, |&start| start as usize);
+        start..start
+    }
+
+    /// Those that were not removed.
+    pub fn compacted(&self) -> Faces {
+        Faces::collect(self.iter().filter(|face| !face.is_empty()))
     }
 
     /// The vertices of a face; none where there is no such face.

@@ -55,6 +55,14 @@ impl Scheme {
         }
     }
 
+    /// How many ptex faces a face with so many corners has.
+    pub(crate) fn ptex_faces(self, corners: usize) -> usize {
+        match self.is_whole(corners) {
+            true => corners.min(1),
+            false => corners,
+        }
+    }
+
     /// The scheme that the beginning of a file's name speaks of, as the names of OpenSubdiv's shapes do.
     ///
     /// ```

@@ -11,15 +11,9 @@ impl Scheme {
     /// [`Error::Input`] names a face that is no triangle when all must be, and a semi-sharp crease or corner of [`Scheme::Butterfly`],
     /// whose rules know sharp and smooth and nothing between.
     pub fn check(self, mesh: &ControlMesh) -> Result<()> {
-        let polygon = mesh.faces().position(|face| face.len() != 3);
-        if let Some(face) = polygon.filter(|_| self.is_triangular()) {
-            let corners = mesh.face(face).len();
-            return Err(Error::input(
-                Place::Face(face),
-                format!("it has {corners} vertices, but the scheme {self} takes triangles only"),
-                "triangulate the mesh, or choose the scheme catmull-clark",
-            ));
-        }
+        // Those that were removed have no corners.
+        let mut faces = mesh.faces().enumerate().filter(|of| !of.1.is_empty());
+        faces.try_for_each(|(face, vertices)| self.check_face(face, vertices.len()))?;
         if self != Scheme::Butterfly {
             return Ok(());
         }
@@ -33,6 +27,21 @@ impl Scheme {
         creases
             .chain(corners)
             .try_for_each(|(place, sharpness)| self.check_sharpness(place, sharpness))
+    }
+
+    /// Whether the scheme takes a face of so many corners.
+    ///
+    /// # Errors
+    /// As [`Scheme::check`].
+    pub(super) fn check_face(self, face: usize, corners: usize) -> Result<()> {
+        if corners == 3 || !self.is_triangular() {
+            return Ok(());
+        }
+        Err(Error::input(
+            Place::Face(face),
+            format!("it has {corners} vertices, but the scheme {self} takes triangles only"),
+            "triangulate the mesh, or choose the scheme catmull-clark",
+        ))
     }
 
     /// Whether the scheme has rules for a sharpness.

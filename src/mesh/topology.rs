@@ -6,6 +6,7 @@
 
 mod connect;
 mod manifold;
+mod rejoin;
 mod retag;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
 use connect::Lists;
+pub(crate) use rejoin::{GONE, Rejoined};
 pub(crate) use retag::Retagged;
 
 /// An edge and how sharp it is.
@@ -94,6 +96,9 @@ impl Topology {
         );
         for &hole in mesh.holes() {
             topology.holes[hole as usize] = true;
+        }
+        for &removed in topology.faces.removed().keys() {
+            topology.holes[removed as usize] = true;
         }
         let open = topology.has_open_boundaries();
         if open {

@@ -1,7 +1,9 @@
 //! What a cache of control points holds: each point once, for all faces that share it.
 
+use std::ops::Range;
+
 use crate::abi;
-use crate::method::{Prepared, Table};
+use crate::method::{Prepared, Table, Update};
 
 /// Levels of a cut, 0..=6: tess level 2^6 is the greatest that Vulkan promises.
 const LEVELS: usize = 7;
@@ -49,7 +51,38 @@ impl CachedPoints {
     }
 }
 
+/// Keeps what a cache holds up with what was prepared.
+pub(crate) trait CacheEdits: std::fmt::Debug + Send + Sync {
+    /// Brings the points up to an edit: those of patches that are other ones. The rest stays where it is. None where there is no room for them; the points are of no use
+    /// then, nor is this.
+    fn edit(
+        &mut self,
+        points: &mut CachedPoints,
+        prepared: &Prepared,
+        update: &Update,
+    ) -> Option<CacheChange>;
+}
+
+/// What an edit changes of a cache.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CacheChange {
+    /// By pass, the tables that have changed, by their numbers among [`CachedPass::tables`], and in which words.
+    pub words: Vec<Vec<(usize, Range<usize>)>>,
+    /// The points that are to be computed: their pass, level and jobs.
+    pub jobs: Vec<(usize, u32, Jobs)>,
+}
+
+/// What a cache holds, and what keeps it up with edits.
+pub(crate) type EditedPoints = (CachedPoints, Box<dyn CacheEdits>);
+
 impl Prepared {
+    /// The same as [`cached_points`](Self::cached_points), with room for points to come; None where that cannot be edited.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn edited_points(&self, level: u32) -> Option<EditedPoints> {
+        let level = level.min(abi::HIGHEST_LEVEL).min(LEVELS as u32 - 1);
+        self.recached.map(|of| of(self, level))
+    }
+
     /// What a cache holds of control points up to a plan level; nothing where no pass has any.
     pub fn cached_points(&self, level: u32) -> CachedPoints {
         let level = level.min(abi::HIGHEST_LEVEL).min(LEVELS as u32 - 1);

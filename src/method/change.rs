@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::abi;
-#[cfg(feature = "vulkan")]
-use crate::method::Prepared;
+use crate::mesh::{ChangeSet, Model};
+use crate::method::{Outline, Prepared};
 
 /// Which words of a pass' tables are other ones: its patches, the numbers of control vertices, texture coordinates, and the method's own tables, in this order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,16 +21,24 @@ pub struct Update {
     pub is_whole: bool,
     /// By pass, which words of its tables are other ones; nothing where all are.
     pub passes: Vec<PassChange>,
+    /// Whether faces and vertices are other ones.
+    is_reconnected: bool,
     /// The version that was edited.
     before: u64,
 }
 
 impl Update {
     /// An update of a version.
-    pub(super) fn new(is_whole: bool, passes: Vec<PassChange>, before: u64) -> Update {
+    pub(super) fn new(
+        is_whole: bool,
+        passes: Vec<PassChange>,
+        before: u64,
+        is_reconnected: bool,
+    ) -> Update {
         Update {
             is_whole,
             passes,
+            is_reconnected,
             before,
         }
     }
@@ -105,6 +113,47 @@ impl PassChange {
     }
 }
 
+/// The sides of each pass's patches.
+pub(super) type Sides = Vec<Vec<[u32; 4]>>;
+
+impl Prepared {
+    /// Gives the sides of all patches the numbers that edges have after an edit; tells those that they had.
+    pub(super) fn renumber(&mut self, changes: &ChangeSet, model: &Model) -> Sides {
+        if !changes.is_reconnected() {
+            return Sides::new();
+        }
+        let before: Sides = self.passes.iter().map(|pass| pass.sides.clone()).collect();
+        let (were, are) = (
+            self.outline.edges().len() as u32,
+            model.topology().edge_count() as u32,
+        );
+        let sides = self.passes.iter_mut().flat_map(|pass| &mut pass.sides);
+        for side in sides.flatten() {
+            *side = match side.checked_sub(were) {
+                Some(face) => are + face,
+                // Patches of an edge that is gone are planned again, or gone themselves.
+                None => changes.edge(*side).unwrap_or(0),
+            };
+        }
+        before
+    }
+
+    /// Takes sides back.
+    pub(super) fn restore(&mut self, sides: Sides) {
+        for (pass, sides) in self.passes.iter_mut().zip(sides) {
+            pass.sides = sides;
+        }
+    }
+
+    /// Takes over the faces and vertices of a model.
+    pub(super) fn surround(&mut self, model: &Model) {
+        self.outline = Outline::new(model.topology());
+        for pass in &mut self.passes {
+            pass.needs[0] = model.mesh().vertex_count();
+        }
+    }
+}
+
 #[cfg(feature = "vulkan")]
 impl Prepared {
     /// Takes over what an update has changed in another one, which was as this one is.
@@ -130,6 +179,13 @@ impl Prepared {
                 .extend_from_slice(&edited.scratch_points[known..]);
             own.scratch_products
                 .extend_from_slice(&edited.scratch_products[known..]);
+        }
+        if update.is_reconnected {
+            self.outline = edited.outline.clone();
+            for (own, edited) in self.passes.iter_mut().zip(&edited.passes) {
+                own.sides.clone_from(&edited.sides);
+                own.needs = edited.needs;
+            }
         }
         self.origin = edited.origin;
         self.plans = None;

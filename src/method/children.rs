@@ -24,7 +24,10 @@ pub fn children(model: &Model) -> Vec<Child> {
     let firsts: Vec<u32> = (0..topology.face_count() as u32)
         .map(|face| {
             let arity = topology.face(face).len();
-            let count = if scheme.is_whole(arity) { 4 } else { arity };
+            let count = match scheme.is_whole(arity) {
+                true => 4 * arity.min(1),
+                false => arity,
+            };
             let own = first;
             first += count as u32;
             own

@@ -10,7 +10,7 @@ pub(super) trait Edits: Send + Sync {
     /// Gives passes room for patches to come.
     fn spare(&mut self, prepared: &mut Prepared);
 
-    /// Plans faces again. Where that fails the passes are as they were, and nothing is edited any more.
+    /// Plans those faces again that an edit has changed. Where that fails the passes are as they were, and nothing is edited any more.
     ///
     /// # Errors
     /// As [`Method::prepare`].
@@ -18,7 +18,7 @@ pub(super) trait Edits: Send + Sync {
         &mut self,
         prepared: &mut Prepared,
         model: &Model,
-        faces: &[u32],
+        changes: &ChangeSet,
         database: &Database,
     ) -> Result<Vec<PassChange>>;
 }
@@ -132,19 +132,25 @@ impl Editable {
             Some(edits) => {
                 let before = self.prepared.version();
                 let patches = self.prepared.capacities();
-                let faces = changes.faces();
-                let passes = match faces {
+                let sides = self.prepared.renumber(changes, model);
+                let passes = match changes.faces() {
                     // Positions alone, or tags that say what is so anyhow.
-                    [] => Vec::new(),
-                    faces => edits
-                        .edit(&mut self.prepared, model, faces, database)
-                        .inspect_err(|_| self.edits = None)?,
+                    [] if !changes.is_reconnected() => Ok(Vec::new()),
+                    _ => edits.edit(&mut self.prepared, model, changes, database),
                 };
+                let passes = passes.inspect_err(|_| {
+                    self.edits = None;
+                    self.prepared.restore(sides);
+                })?;
+                if changes.is_reconnected() {
+                    self.prepared.surround(model);
+                }
                 let is_whole = patches != self.prepared.capacities();
                 self.prepared.follow(model, is_whole);
                 self.revision = model.revision();
                 let passes = if is_whole { Vec::new() } else { passes };
-                return Ok(Update::new(is_whole, passes, before));
+                let is_reconnected = changes.is_reconnected();
+                return Ok(Update::new(is_whole, passes, before, is_reconnected));
             }
             None => {}
         }
@@ -160,7 +166,7 @@ impl Editable {
         self.words = prepared.table_words();
         (self.prepared, self.edits) = (prepared, edits);
         self.revision = model.revision();
-        Ok(Update::new(true, Vec::new(), 0))
+        Ok(Update::new(true, Vec::new(), 0, true))
     }
 
     /// Whether there is more than twice as much as when everything was prepared last: a good time to [`renew`](Self::renew) it, before an update has to.

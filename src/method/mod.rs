@@ -89,6 +89,9 @@ use crate::tessellation::Domain;
 use editable::Edits;
 use origin::Origin;
 
+#[cfg(feature = "vulkan")]
+pub(crate) use cached::CacheEdits;
+use cached::EditedPoints;
 pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use cell::Cell;
 pub use change::{PassChange, Update};
@@ -378,6 +381,9 @@ pub struct Prepared {
     pub plans: Option<PlanStatistics>,
     /// Tells what a cache holds of its control points.
     cached: Option<fn(&Prepared, u32) -> CachedPoints>,
+    /// The same of what is edited.
+    #[cfg_attr(not(feature = "vulkan"), allow(dead_code))] // Only devices have caches.
+    recached: Option<fn(&Prepared, u32) -> EditedPoints>,
     /// What it was made of. Filled in by [`Method::prepare`].
     origin: Origin,
 }

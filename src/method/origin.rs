@@ -44,6 +44,7 @@ fn fingerprint(model: &Model) -> u64 {
     let mut hasher = FxHasher::default();
     mesh.options().hash(&mut hasher);
     mesh.faces().for_each(|face| face.hash(&mut hasher));
+    mesh.shared_faces().removed().hash(&mut hasher);
     for crease in mesh.creases() {
         (crease.vertices, crease.sharpness.to_bits()).hash(&mut hasher);
     }

@@ -26,7 +26,7 @@ pub fn parts(model: &Model) -> Vec<Part> {
     let mut ptex = 0;
     for face in 0..model.topology().face_count() as u32 {
         let all = parts_at(model, face, ptex);
-        ptex += all.len() as u32;
+        ptex += model.mesh().ptex_faces(face as usize) as u32;
         if !model.topology().is_hole(face) {
             parts.extend(all);
         }
@@ -34,7 +34,7 @@ pub fn parts(model: &Model) -> Vec<Part> {
     parts
 }
 
-/// The parts of those of some faces, in ascending order, that are no holes, and the ptex faces of the others.
+/// The parts of those of some faces, in ascending order, that are no holes, and the ptex faces of the others, removed ones included.
 pub fn parts_of(model: &Model, faces: &[u32]) -> (Vec<Part>, Vec<u32>) {
     let only_quads = model.topology().quads().is_some();
     let whole = only_quads && model.mesh().options().scheme.is_whole(4);
@@ -47,7 +47,7 @@ pub fn parts_of(model: &Model, faces: &[u32]) -> (Vec<Part>, Vec<u32>) {
         let ptex = first.get(face as usize).copied().unwrap_or(face);
         let all = parts_at(model, face, ptex);
         match model.topology().is_hole(face) {
-            true => holes.extend(all.map(|part| part.ptex)),
+            true => holes.extend(ptex..ptex + model.mesh().ptex_faces(face as usize) as u32),
             false => parts.extend(all),
         }
     }
@@ -62,7 +62,7 @@ fn parts_at(model: &Model, face: u32, ptex: u32) -> impl ExactSizeIterator<Item 
         3 if whole => Domain::Triangles,
         _ => Domain::Quads,
     };
-    (0..if whole { 1 } else { arity }).map(move |corner| Part {
+    (0..if whole { arity.min(1) } else { arity }).map(move |corner| Part {
         domain,
         face,
         corner,

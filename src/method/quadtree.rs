@@ -12,6 +12,7 @@ mod places;
 mod plain;
 mod planned;
 mod planner;
+mod recached;
 mod run;
 mod store;
 mod subjects;
@@ -25,7 +26,7 @@ use glam::Vec3;
 
 use crate::abi;
 use crate::error::Result;
-use crate::mesh::{Model, Scheme};
+use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
 use crate::method::patches::{self, Part};
 use crate::method::{Contract, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces};
@@ -137,10 +138,12 @@ impl Edits for Planner {
         &mut self,
         prepared: &mut Prepared,
         model: &Model,
-        faces: &[u32],
+        changes: &ChangeSet,
         database: &Database,
     ) -> Result<Vec<PassChange>> {
+        let faces = changes.faces();
         let (parts, gone) = patches::parts_of(model, faces);
+        self.renumber(changes, model.topology());
         let wanted = Wanted {
             faces,
             parts: &parts,
@@ -190,6 +193,7 @@ fn planned(
         passes,
         plans: Some(plans),
         cached: Some(cached::cached_points),
+        recached: Some(recached::edited_points),
         ..Prepared::default()
     };
     Ok((prepared, planner))

@@ -48,6 +48,17 @@ impl Table {
 }
 
 impl Table {
+    /// Writes words from a place on, behind its end too.
+    pub(super) fn write(&mut self, place: usize, words: &[u32]) {
+        let end = place + words.len();
+        if self.words.len() < end {
+            self.words.resize(end, 0);
+        }
+        self.words[place..end].copy_from_slice(words);
+    }
+}
+
+impl Table {
     /// Takes over some words of another one, which has as many or more.
     #[cfg(feature = "vulkan")]
     pub(super) fn adopt(&mut self, other: &Table, range: std::ops::Range<usize>) {

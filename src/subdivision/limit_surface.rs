@@ -114,9 +114,8 @@ impl LimitSurface {
     ) -> LimitSurface {
         let faces = 0..topology.face_count() as u32;
         let ptex = faces.flat_map(|face| {
-            let arity = topology.face(face).len();
-            let corners = if scheme.is_whole(arity) { 1 } else { arity };
-            (0..corners).map(move |corner| (face, corner as u32))
+            let parts = scheme.ptex_faces(topology.shared_faces().corners(face as usize));
+            (0..parts).map(move |corner| (face, corner as u32))
         });
         let greatest = positions.iter().map(|p| p.abs().max_element());
         LimitSurface {

@@ -66,29 +66,33 @@ pub(in crate::mesh) fn check_position(vertex: usize, position: DVec3, is_used: b
 
 pub(super) fn check_faces(mesh: &ControlMesh) -> Result<()> {
     let count = mesh.vertex_count();
-    for (number, face) in mesh.faces().enumerate() {
-        let place = || Place::Face(number);
-        if face.len() < 3 {
-            return Err(Error::input(
-                place(),
-                format!("it has {} vertices", face.len()),
-                "faces need three or more vertices",
-            ));
-        }
-        if let Some(vertex) = face.iter().find(|&&vertex| vertex as usize >= count) {
-            return Err(Error::input(
-                place(),
-                format!("it names vertex {vertex}, but the mesh has {count} vertices"),
-                "vertex indices must be below the number of vertices",
-            ));
-        }
-        if let Some(vertex) = named_twice(face) {
-            return Err(Error::input(
-                place(),
-                format!("it names vertex {vertex} twice"),
-                "remove the repeated vertex, or split the face",
-            ));
-        }
+    let mut faces = mesh.faces().enumerate();
+    faces.try_for_each(|(number, face)| check_face(number, face, count))
+}
+
+/// Refuses a face of too few vertices, and one that names a vertex twice or one that is not among so many.
+pub(in crate::mesh) fn check_face(number: usize, face: &[u32], count: usize) -> Result<()> {
+    let place = Place::Face(number);
+    if face.len() < 3 {
+        return Err(Error::input(
+            place,
+            format!("it has {} vertices", face.len()),
+            "faces need three or more vertices",
+        ));
+    }
+    if let Some(vertex) = face.iter().find(|&&vertex| vertex as usize >= count) {
+        return Err(Error::input(
+            place,
+            format!("it names vertex {vertex}, but the mesh has {count} vertices"),
+            "vertex indices must be below the number of vertices",
+        ));
+    }
+    if let Some(vertex) = named_twice(face) {
+        return Err(Error::input(
+            place,
+            format!("it names vertex {vertex} twice"),
+            "remove the repeated vertex, or split the face",
+        ));
     }
     Ok(())
 }

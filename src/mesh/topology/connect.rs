@@ -95,7 +95,11 @@ impl Topology {
     }
 
     /// Faces that know their vertices, and vertices that know their faces.
-    fn apart(faces: Arc<Faces>, vertex_sharpness: Vec<f32>, options: SchemeOptions) -> Topology {
+    pub(super) fn apart(
+        faces: Arc<Faces>,
+        vertex_sharpness: Vec<f32>,
+        options: SchemeOptions,
+    ) -> Topology {
         let mut topology = Topology {
             holes: vec![false; faces.len()],
             faces,
@@ -182,7 +186,11 @@ impl Topology {
 
     /// Numbers the edges in the order in which the faces first show them; `first` tells for each side the first of its edge. Then fills the lists that
     /// answer "which faces and edges touch".
-    fn join(&mut self, first: &[u32], edge: impl Fn(usize, u32, u32) -> (f32, [f32; 2])) {
+    pub(super) fn join(
+        &mut self,
+        first: &[u32],
+        edge: impl Fn(usize, u32, u32) -> (f32, [f32; 2]),
+    ) {
         let is_first = |&(side, &first): &(usize, &u32)| side == first as usize;
         let count = first.iter().enumerate().filter(is_first).count();
         let mut edges: Vec<Edge> = Vec::with_capacity(count);

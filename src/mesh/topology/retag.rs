@@ -15,6 +15,8 @@ pub(crate) struct Retagged {
     pub edges: Vec<u32>,
     /// Vertices.
     pub vertices: Vec<u32>,
+    /// Vertices around which there are other edges than before.
+    pub around: Vec<u32>,
     /// Faces that have become holes, or stopped being any.
     pub faces: Vec<u32>,
 }
@@ -54,18 +56,27 @@ impl Topology {
             .edges
             .iter()
             .flat_map(|&edge| self.edge(edge).vertices);
-        let mut ends: Vec<u32> = ends.collect();
+        let mut ends: Vec<u32> = ends.chain(changed.around.iter().copied()).collect();
         ends.sort_unstable();
         ends.dedup();
         for &vertex in &ends {
             self.foresee_at(&tags, vertex, &mut vertices);
         }
-        self.retag_vertices(mesh, &changed.vertices, &mut vertices);
+        let tagged = changed.vertices.iter().chain(&changed.around);
+        self.retag_vertices(mesh, tagged, &mut vertices);
+        vertices.extend(&changed.around);
         let holes = self.retag_holes(&tags, &ends, &changed.faces);
         let around = vertices
             .iter()
             .flat_map(|&vertex| self.vertex_faces(vertex));
         let mut faces: Vec<u32> = around.map(|at| at.face).collect();
+        // Those that were removed are around nothing.
+        faces.extend(
+            changed
+                .faces
+                .iter()
+                .filter(|&&face| self.face(face).is_empty()),
+        );
         for &hole in &holes {
             faces.push(hole);
             let beside = self.face_edges(hole).iter();
@@ -128,8 +139,13 @@ impl Topology {
         }
     }
 
-    fn retag_vertices(&mut self, mesh: &ControlMesh, vertices: &[u32], changed: &mut Vec<u32>) {
-        if vertices.is_empty() {
+    fn retag_vertices<'a>(
+        &mut self,
+        mesh: &ControlMesh,
+        vertices: impl Iterator<Item = &'a u32> + Clone,
+        changed: &mut Vec<u32>,
+    ) {
+        if vertices.clone().next().is_none() {
             return;
         }
         let manifold = self.manifold_edges();
@@ -159,7 +175,9 @@ impl Topology {
         }
         let mut changed = Vec::new();
         for face in asked {
-            let is_hole = tags.mesh.holes().contains(&face) || self.is_left_open(tags, face);
+            let is_hole = self.face(face).is_empty()
+                || tags.mesh.holes().contains(&face)
+                || self.is_left_open(tags, face);
             if std::mem::replace(&mut self.holes[face as usize], is_hole) != is_hole {
                 changed.push(face);
             }
@@ -181,28 +199,52 @@ impl Topology {
 
 #[cfg(test)]
 impl Topology {
-    /// The faces, of as many in both, that look different from their own surroundings.
+    /// The faces of either that look different from their own surroundings: by vertices, whatever the numbers of edges.
     pub(crate) fn differing(&self, other: &Topology) -> Vec<u32> {
         let both = [self, other];
+        let edge = |of: &Topology, edge: u32| {
+            let next = of.next_sharpness(edge).map(f32::to_bits);
+            let own = of.edge(edge);
+            (own.vertices, own.sharpness.to_bits(), next)
+        };
         let at_vertex = |vertex: u32| {
             both.map(|of| {
-                let edges = of.vertex_edges(vertex).iter().map(|&edge| {
-                    let next = of.next_sharpness(edge).map(f32::to_bits);
-                    (of.edge(edge).sharpness.to_bits(), next)
-                });
+                let edges = of.vertex_edges(vertex).iter().map(|&own| edge(of, own));
                 let edges: Vec<_> = edges.collect();
-                (of.vertex_sharpness(vertex).to_bits(), edges)
+                let faces = of.vertex_faces(vertex).to_vec();
+                (of.vertex_sharpness(vertex).to_bits(), edges, faces)
             })
         };
         let is_different = |&face: &u32| {
-            let [one, two] = both.map(|of| (of.is_hole(face), of.face(face), of.face_edges(face)));
+            let [one, two] = both.map(|of| {
+                let edges = of.face_edges(face).iter().map(|&own| edge(of, own));
+                (of.is_hole(face), of.face(face), edges.collect::<Vec<_>>())
+            });
             one != two
                 || one.1.iter().any(|&vertex| {
                     let [one, two] = at_vertex(vertex);
                     one != two
                 })
         };
-        let faces = 0..self.face_count() as u32;
+        let faces = 0..self.face_count().max(other.face_count()) as u32;
         faces.filter(is_different).collect()
+    }
+
+    /// Whether all that is asked of them is the same, numbers included.
+    pub(crate) fn is_same(&self, other: &Topology) -> bool {
+        let [one, two] = [self, other].map(|of| {
+            let next = (0..of.edge_count() as u32).map(|edge| of.next_sharpness(edge));
+            let next: Vec<_> = next.map(|next| next.map(f32::to_bits)).collect();
+            let all = 0..of.vertex_count().max(of.edge_count()) as u32;
+            let lists = all.map(|i| (of.edge_faces(i), of.vertex_faces(i), of.vertex_edges(i)));
+            let sharpness = of.vertex_sharpness.iter().map(|own| own.to_bits());
+            (
+                next,
+                lists.collect::<Vec<_>>(),
+                sharpness.collect::<Vec<_>>(),
+                (&of.faces, &of.face_edges, &of.edges, &of.holes),
+            )
+        });
+        one == two
     }
 }

@@ -19,6 +19,8 @@ pub struct Hexagons {
     /// How they are computed.
     pub points: Points,
     refined: Topology,
+    /// The first child of each triangle.
+    firsts: Vec<u32>,
     /// The point at each corner of each of its faces.
     numbers: Vec<[u32; 3]>,
     /// How many points a vertex of the refined mesh has.
@@ -85,11 +87,20 @@ impl Hexagons {
             }
         }
         let numbers = sort(&mut places, numbers);
+        // Faces that were removed have no children.
+        let children = |face| 4 * topology.face(face).len().min(1) as u32;
+        let firsts = (0..topology.face_count() as u32).scan(0, |next, face| {
+            let first = *next;
+            *next += children(face);
+            Some(first)
+        });
+        let firsts: Vec<u32> = firsts.collect();
         let rows = Rows {
             topology,
             refined: &refined,
             scheme,
             masks: &masks,
+            firsts: &firsts,
         };
         let cusps = places
             .iter()
@@ -100,13 +111,14 @@ impl Hexagons {
             refined,
             numbers,
             counts,
+            firsts,
         }
     }
 
     /// The points of a triangle, corners first, then the middles of the edges from corner i to corner i + 1; and the flags of those places
     /// where the surface has several normals.
     pub fn of(&self, face: u32) -> ([u32; 6], u32) {
-        let child = |number: u32| 4 * face + number;
+        let child = |number: u32| self.firsts[face as usize] + number;
         let mut flags = 0;
         let points = std::array::from_fn(|i| {
             // A corner belongs to the child there, the middle of an edge to the middle child, opposite to its corner.
@@ -173,6 +185,8 @@ struct Rows<'a> {
     scheme: Scheme,
     /// Of each vertex of the refined mesh, over the control vertices.
     masks: &'a [Mask],
+    /// The first child of each triangle.
+    firsts: &'a [u32],
 }
 
 /// So many halvings lead from a vertex of the refined mesh to the surroundings that the truth asks, 1/64 away in the control mesh.
@@ -269,7 +283,9 @@ impl Rows<'_> {
     /// method shall agree on whether they are firm. Only faces around control vertices are alone, or without a promised plane; each is the child at that
     /// corner of its own.
     fn checked_limit(&self, place: &Place) -> LimitStencil {
-        let (face, corner) = (place.face / 4, place.face % 4);
+        // Of those that begin alike, all but the last were removed.
+        let parent = self.firsts.partition_point(|&first| first <= place.face) - 1;
+        let (face, corner) = (parent as u32, place.face - self.firsts[parent]);
         let limit = deep_limit(self.topology, self.scheme, face, corner);
         let LimitStencil { du, dv, .. } = limit.expect("the face has this corner");
         let [du, dv] = orthonormal_masks(&du, &dv);

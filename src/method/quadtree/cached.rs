@@ -23,55 +23,73 @@ type Vertices = SmallVec<[u32; 32]>;
 
 /// A point that a patch needs.
 #[derive(Clone, Copy)]
-struct Needed {
+pub(super) struct Needed {
     /// Of what makes points the same.
-    hash: u64,
+    pub hash: u64,
     /// `JOB_...`, the use, and a row of its plan or a place in the ring.
-    job: u32,
+    pub job: u32,
     /// The level of a cut from which on it is needed.
-    level: u32,
+    pub level: u32,
 }
 
 /// What a patch needs, and where it looks for it.
 #[derive(Default)]
-struct PatchPoints {
-    needed: Vec<Needed>,
+pub(super) struct PatchPoints {
+    pub needed: Vec<Needed>,
     /// Where the points of each use begin among `places`.
     starts: [u32; USES],
     /// Numbers of `needed`, and whether the point behind it is meant: the origins of the uses, the plain vertices, the points of each use.
     places: Vec<(u32, bool)>,
 }
 
+impl PatchPoints {
+    /// What shaders read of it, at a place in the pass's table, when the points have these places in the cache.
+    pub fn words(&self, first: u32, place: impl Fn(u32) -> u32) -> Vec<u32> {
+        let starts = self.starts.map(|start| first + abi::USES + start);
+        let places = self.places.iter();
+        let places = places.map(|&(needed, second)| place(needed) + u32::from(second));
+        starts.into_iter().chain(places).collect()
+    }
+}
+
 /// A point of the cache, and the patch that computes it.
-struct Owned {
-    pass: usize,
-    patch: usize,
-    job: u32,
-    level: u32,
+pub(super) struct Owned {
+    pub pass: usize,
+    pub patch: usize,
+    pub job: u32,
+    pub level: u32,
 }
 
 /// A patch as its points are told from others'.
 #[derive(Clone, Copy)]
-struct Patch<'a> {
+pub(super) struct Patch<'a> {
     pass: &'a Pass,
     border: Border<'a>,
     number: usize,
 }
 
-/// What a cache holds up to a plan level.
-pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
+/// The patches whose points are cached: pass and number.
+pub(super) fn patches(prepared: &Prepared) -> Vec<(usize, &Pass, usize)> {
     let passes = prepared.passes.iter().enumerate();
     let cached = passes.filter(|(_, pass)| pass.cached.is_some());
-    let all: Vec<(usize, &Pass, usize)> = cached
+    cached
         .flat_map(|(i, pass)| (0..pass.patches.len()).map(move |number| (i, pass, number)))
-        .collect();
-    let points: Vec<PatchPoints> = all
-        .par_iter()
-        .map(|&(_, pass, number)| match pass.is_vacant(number) {
-            true => PatchPoints::default(),
-            false => Patch::new(pass, number).points(deepest),
-        })
-        .collect();
+        .collect()
+}
+
+/// What patches need up to a plan level.
+pub(super) fn needed(all: &[(usize, &Pass, usize)], deepest: u32) -> Vec<PatchPoints> {
+    let of = |&(_, pass, number): &(usize, &Pass, usize)| match pass.is_vacant(number) {
+        true => PatchPoints::default(),
+        false => Patch::new(pass, number).points(deepest),
+    };
+    all.par_iter().map(of).collect()
+}
+
+/// What a cache holds up to a plan level.
+pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
+    let all = patches(prepared);
+    let points = needed(&all, deepest);
     let (owned, numbers) = shared(prepared, &all, &points);
     let mut made = CachedPoints {
         passes: vec![CachedPass::default(); prepared.passes.len()],
@@ -83,11 +101,8 @@ pub fn cached_points(prepared: &Prepared, deepest: u32) -> CachedPoints {
         let [starts, block] = &mut blocks[pass];
         let first = block.len() as u32;
         starts.push(first);
-        block.extend(points.starts.map(|start| first + abi::USES + start));
-        let place = |&(needed, second): &(u32, bool)| {
-            places[numbers[needed as usize] as usize] + u32::from(second)
-        };
-        block.extend(points.places.iter().map(place));
+        let place = |needed: u32| places[numbers[needed as usize] as usize];
+        block.extend(points.words(first, place));
     }
     for ((pass, [starts, block]), jobs) in made.passes.iter_mut().zip(&blocks).zip(&jobs) {
         pass.tables = vec![Table::of(starts), Table::of(block), Table::of(jobs)];
@@ -139,7 +154,7 @@ fn place(
 
 /// Each point once, and for each patch which these are that it needs. Points of the same hash are taken for the same; where that proves wrong, a patch has
 /// its own.
-fn shared(
+pub(super) fn shared(
     prepared: &Prepared,
     all: &[(usize, &Pass, usize)],
     points: &[PatchPoints],
@@ -199,14 +214,14 @@ fn parts(job: u32) -> (u32, usize, u32) {
 }
 
 /// A corner's limit comes with its normal.
-fn with_normal(own: u32) -> impl Iterator<Item = u32> {
+pub(super) fn with_normal(own: u32) -> impl Iterator<Item = u32> {
     let (kind, number, row) = parts(own);
     let normal = (kind == abi::JOB_LIMIT).then(|| job(abi::JOB_NORMAL, number, row));
     std::iter::once(own).chain(normal)
 }
 
 impl<'a> Patch<'a> {
-    fn new(pass: &'a Pass, number: usize) -> Patch<'a> {
+    pub fn new(pass: &'a Pass, number: usize) -> Patch<'a> {
         Patch {
             pass,
             border: Border::of(pass, number),
@@ -230,7 +245,7 @@ impl<'a> Patch<'a> {
         self.pass.controls[(controls + place) as usize]
     }
 
-    fn products(self, job: u32) -> u64 {
+    pub fn products(self, job: u32) -> u64 {
         let (kind, number, _) = parts(job);
         let size = u64::from(self.border.used(number).size);
         match kind {
@@ -379,7 +394,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    fn is_same(self, job: u32, other: Patch<'_>, others: u32) -> bool {
+    pub fn is_same(self, job: u32, other: Patch<'_>, others: u32) -> bool {
         let ((kind, number, row), (its_kind, its_number, its_row)) = (parts(job), parts(others));
         if kind != its_kind {
             return false;

@@ -8,8 +8,8 @@ use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::error::Result;
-use crate::mesh::Model;
 use crate::mesh::topology::Topology;
+use crate::mesh::{ChangeSet, Model};
 use crate::method::outline::sides;
 use crate::method::patches::Part;
 use crate::method::quadtree::agreement::{agree, agreed_edges};
@@ -156,6 +156,20 @@ impl Planner {
         for (number, pass) in passes.iter_mut().enumerate() {
             self.extend(number, pass);
         }
+    }
+
+    /// Gives edges the numbers that they have after an edit.
+    pub fn renumber(&mut self, changes: &ChangeSet, topology: &Topology) {
+        if !changes.is_reconnected() {
+            return;
+        }
+        let mut agreed = vec![false; topology.edge_count()];
+        for (edge, _) in (0..).zip(&self.agreed).filter(|(_, agreed)| **agreed) {
+            if let Some(edge) = changes.edge(edge) {
+                agreed[edge as usize] = true;
+            }
+        }
+        self.agreed = agreed;
     }
 
     /// Plans faces. The passes are left as they were where that fails, and the planner is of no use then.
@@ -394,7 +408,12 @@ impl Planner {
             return;
         };
         self.let_go(passes, place, log);
-        passes[place.pass].patches[place.slot as usize] = VACANT;
+        let (pass, slot) = (&mut passes[place.pass], place.slot as usize);
+        pass.patches[slot] = VACANT;
+        // Sides keep up with edges only as long as somebody has them.
+        if let Some(sides) = pass.sides.get_mut(slot) {
+            *sides = [0; 4];
+        }
         self.vacant[place.pass].push(place.slot);
     }
 

@@ -61,6 +61,8 @@ constants! {
     POINTS_NEARBY = 5;
     /// Kind of a step: normals from those nearby, unless these cancel.
     POINTS_CUSP = 6;
+    /// Kind of a step: positions are sums of weighted positions of earlier points.
+    POINTS_REFINE = 7;
     /// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
     ROW_OPEN = 0x8000_0000;
     /// Row flag: tangents that are nearly parallel give no normal.
@@ -150,14 +152,14 @@ constants! {
     /// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
     TERMINAL_POINTS = 64;
 
-    /// Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
+    /// Patch flag, shifted by the edge's number: beyond it lie two patches, of an n-gon or a finer level: so it gets an even number of segments.
     PATCH_EVEN_EDGE = 1;
     /// Patch flag: part of an n-gon, with half the tess level of a quad.
     PATCH_HALF = 16;
     /// Patch flag: where the corner of the ptex face that is corner 0 of the patch stands; two bits.
     PATCH_TURN_SHIFT = 5;
 
-    /// Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
+    /// Patch flag of a triangle or a piece, shifted by the edge's number, or that of all edges and the corner's: the surface has several normals there.
     PATCH_CREASED = 0x1_0000;
 
     /// Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
@@ -175,6 +177,12 @@ constants! {
     CHILD_OF_QUAD = 1;
     /// The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
     CHILD_OF_TRIANGLE = 5;
+    /// A piece of a quad, which its `plan` tells: its column and, 12 bits higher, its row among as many as there are at its depth.
+    CHILD_PIECE = 9;
+    /// In a piece's `plan`: its edge with a crease plus 1, or 0; three bits.
+    PIECE_CREASE_SHIFT = 24;
+    /// In a piece's `plan`: its depth, how often the ptex face is halved.
+    PIECE_DEPTH_SHIFT = 28;
     /// Flag of a `TablePlace`: the edge runs against the direction of that face.
     PLACE_FLIPPED = 0x8000_0000;
     /// Flag of a `TableFace`'s normals: the weights there are two rows a point, of the limit's tangents.

@@ -56,6 +56,8 @@ const uint POINTS_SPARE = 4u;
 const uint POINTS_NEARBY = 5u;
 // Kind of a step: normals from those nearby, unless these cancel.
 const uint POINTS_CUSP = 6u;
+// Kind of a step: positions are sums of weighted positions of earlier points.
+const uint POINTS_REFINE = 7u;
 // Row flag: the ring of faces is open, its first and last vertex belong to one face each.
 const uint ROW_OPEN = 2147483648u;
 // Row flag: tangents that are nearly parallel give no normal.
@@ -144,13 +146,13 @@ const uint LONG_PLACE_BITS = 16u;
 const uint STENCIL_CORNER = 5u;
 // Points in a level of a terminal node: sixteen for each of its children x + 2 y.
 const uint TERMINAL_POINTS = 64u;
-// Patch flag, shifted by the edge's number: an n-gon lies beyond the edge, which therefore gets an even number of segments.
+// Patch flag, shifted by the edge's number: beyond it lie two patches, of an n-gon or a finer level: so it gets an even number of segments.
 const uint PATCH_EVEN_EDGE = 1u;
 // Patch flag: part of an n-gon, with half the tess level of a quad.
 const uint PATCH_HALF = 16u;
 // Patch flag: where the corner of the ptex face that is corner 0 of the patch stands; two bits.
 const uint PATCH_TURN_SHIFT = 5u;
-// Patch flag of a triangle, shifted by the edge's number, or 3 and the corner's: the surface has several normals there.
+// Patch flag of a triangle or a piece, shifted by the edge's number, or that of all edges and the corner's: the surface has several normals there.
 const uint PATCH_CREASED = 65536u;
 // Patch flag: it is the mirror image of what its plan is for, with u and v exchanged.
 const uint PATCH_MIRRORED = 4194304u;
@@ -166,6 +168,12 @@ const uint PATCH_CHILD_SHIFT = 11u;
 const uint CHILD_OF_QUAD = 1u;
 // The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
 const uint CHILD_OF_TRIANGLE = 5u;
+// A piece of a quad, which its `plan` tells: its column and, 12 bits higher, its row among as many as there are at its depth.
+const uint CHILD_PIECE = 9u;
+// In a piece's `plan`: its edge with a crease plus 1, or 0; three bits.
+const uint PIECE_CREASE_SHIFT = 24u;
+// In a piece's `plan`: its depth, how often the ptex face is halved.
+const uint PIECE_DEPTH_SHIFT = 28u;
 // Flag of a `TablePlace`: the edge runs against the direction of that face.
 const uint PLACE_FLIPPED = 2147483648u;
 // Flag of a `TableFace`'s normals: the weights there are two rows a point, of the limit's tangents.

@@ -94,13 +94,13 @@ void main() {
     float inside = 0.0;
     if (culled == 0u && (record.flags & PATCH_VACANT) == 0u) {
         bool fractional_even = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u;
-        bool is_half = (record.flags & PATCH_HALF) != 0u;
+        uint halvings = patch_halvings(record);
         for (uint i = 0u; i < 4u; ++i) {
-            float level = level_of_side(sides.sides[i], seen, eyes);
+            float level = halved_level(level_of_side(sides.sides[i], seen, eyes), halvings, fractional_even);
             bool even = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u;
             float halved = half_level(level, fractional_even);
-            edges[i] = is_half ? halved : even ? 2.0 * halved : level;
-            inside = max(inside, is_half ? halved : level);
+            edges[i] = even ? 2.0 * halved : level;
+            inside = max(inside, level);
         }
         bool back = (decision.flags & DECIDE_BACK) != 0u && (sides.hull & HULL_SPLINE) != 0u;
         for (uint eye = 0u; eye < eyes && back; ++eye) back = is_back(record, seen + eye, edges, inside);

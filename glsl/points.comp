@@ -27,6 +27,16 @@ void blend(PointRow row, uint number) {
     points[number].position = position;
 }
 
+// The same of points of earlier steps.
+void refine(PointRow row, uint number) {
+    precise vec3 position = vec3(0.0);
+    for (uint i = 0u; i < row.count; ++i) {
+        PointTerm term = terms[row.first + i];
+        position = position + term.position * points[term.source].position;
+    }
+    points[number].position = position;
+}
+
 // The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
 // they are small beside the model. Zero where rounding may have made it.
 vec3 tangent_normal(PointRow row) {
@@ -118,6 +128,7 @@ void main() {
     uint number = point_step.first_point + gl_GlobalInvocationID.x;
     switch (point_step.kind) {
     case POINTS_BLEND: blend(row, number); return;
+    case POINTS_REFINE: refine(row, number); return;
     case POINTS_LIMIT: limit(row, number); return;
     case POINTS_RING: ring(row, number); return;
     case POINTS_SPARE: spare(row, number); return;

@@ -109,6 +109,10 @@ fn options_of_tables_are_used_or_refused() {
         "choose a method that has tables (bft)",
     );
     refused(&["bft", "--table-level", "7"], "1..=6");
+    refused(
+        &["bft", "--isolation", "2"],
+        "--isolation: nothing is refined around features by bft",
+    );
     refused(&["bft", "--shading-level", "3"], "0..=2");
     refused(
         &["bft", "--shading-level", "0", "--geometric-normals"],

@@ -45,6 +45,9 @@ fn nearness(method: &Method) -> String {
         Reproduces::LimitOnLattice(error) => {
             format!("{error:e} of the diagonal on a lattice, linear between")
         }
+        Reproduces::LimitBesideCaps(error) => {
+            format!("{error:e} of the diagonal, end caps approximate")
+        }
         Reproduces::LimitOnHexagon(error) => {
             format!(
                 "{error:e} of the diagonal at corners and middles of edges, approximates between"

@@ -23,6 +23,14 @@ Levels patch_levels(uint number, uint view, Patch record) {
     }
     if ((record.flags & PATCH_VACANT) != 0u) return Levels(vec4(0.0), 0.0);
     float level = clamp(frame.level, 1.0, 64.0);
+#ifdef PIECES
+    bool fractional_even = (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u;
+    level = halved_level(level, patch_halvings(record), fractional_even);
+    precise vec4 of_edges = vec4(level);
+    precise float of_two = 2.0 * half_level(level, fractional_even);
+    for (uint i = 0u; i < 4u; ++i) of_edges[i] = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u ? of_two : level;
+    return Levels(of_edges, level);
+#else
     precise float halved = half_level(level, (frame.flags & FRAME_FRACTIONAL_EVEN) != 0u);
     if ((record.flags & PATCH_HALF) != 0u) return Levels(vec4(halved), halved);
     precise vec4 edges;
@@ -31,6 +39,7 @@ Levels patch_levels(uint number, uint view, Patch record) {
         edges[i] = even ? 2.0 * halved : level;
     }
     return Levels(edges, level);
+#endif
 }
 
 float greatest_level(Levels levels) {
@@ -78,9 +87,15 @@ vec2 shared_coordinates(Patch record, Levels levels, vec3 coordinates) {
     vec2 uv = coordinates.xy;
     bvec2 on = bvec2(uv.x <= 0.0 || uv.x >= 1.0, uv.y <= 0.0 || uv.y >= 1.0);
     uint edge = on.y ? (uv.y <= 0.0 ? 0u : 2u) : (uv.x <= 0.0 ? 3u : 1u);
+#ifdef PIECES
+    // Levels that were halved are whole numbers.
+    bool part = (record.flags & (PATCH_EVEN_EDGE << edge)) == 0u;
+    bool beside = !part || patch_halvings(record) > 0u;
+#else
     bool part = (record.flags & PATCH_HALF) != 0u;
     bool refined = (record.flags & PATCH_REFINED) != 0u;
     bool beside = part ? refined || edge == 0u || edge == 3u : (record.flags & (PATCH_EVEN_EDGE << edge)) != 0u;
+#endif
     if (on.x == on.y || !beside) return uv;
     float along = on.y ? uv.x : uv.y;
     uint segments = uint(levels.edges[edge]);

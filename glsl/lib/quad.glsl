@@ -18,6 +18,8 @@ vec3 sum_of_four(vec4 weights, vec3 a, vec3 b, vec3 c, vec3 d) {
     return sum;
 }
 
+// Pieces have all of this in a way of their own.
+#ifndef PIECES
 // A vertex has one.
 bool has_one_normal(Patch record, vec2 uv) { return true; }
 
@@ -28,6 +30,7 @@ vec3 control_point(Patch record, uint number) { return vec3(0.0); }
 
 #ifdef STAGE_FRAGMENT
 Cell cell_at(Patch record, vec2 uv) { return Cell(NODE_REGULAR, uv, 1.0); }
+#endif
 #endif
 
 #endif

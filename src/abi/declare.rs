@@ -59,7 +59,7 @@ macro_rules! constants {
     ($($(#[doc = $doc:literal])* $name:ident = $value:expr;)*) => {
         $($(#[doc = $doc])* pub const $name: u32 = $value;)*
 
-        fn glsl_constants() -> String {
+        pub(super) fn glsl_constants() -> String {
             let mut text = String::new();
             $(
                 $(text += &format!("//{}\n", $doc);)*

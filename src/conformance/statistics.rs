@@ -98,9 +98,16 @@ fn model_cases(name: &str) -> Vec<Case> {
         .into()
 }
 
-/// One patch a face that the scheme takes whole, or four where the method refines first, and one a corner of other faces; none in holes.
+/// One patch a face that the scheme takes whole, or four where the method refines first, and one a corner of other faces; none in holes. Where faces are in
+/// pieces, all that there are.
 fn patches(model: &Model, prepared: &Prepared) -> u64 {
     let mut all = prepared.passes.iter().flat_map(|pass| &pass.patches);
+    if all
+        .clone()
+        .any(|patch| patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE)
+    {
+        return all.count() as u64;
+    }
     let refined = all.any(|patch| patch.flags & abi::PATCH_REFINED != 0);
     let scheme = model.mesh().options().scheme;
     let faces = model.mesh().faces().enumerate();

@@ -34,6 +34,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
+    isolates: false,
     covers: spokes::check,
     prepare,
     edits: None,

@@ -58,6 +58,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: true,
+    isolates: false,
     covers: covered::check,
     prepare,
     edits: None,

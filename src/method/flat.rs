@@ -28,6 +28,7 @@ pub const METHOD: Method = Method {
         watertight: false,
     },
     uses_tables: false,
+    isolates: false,
     covers: method::every_mesh,
     prepare,
     edits: None,

@@ -37,6 +37,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
+    isolates: false,
     covers: spokes::check,
     prepare,
     edits: None,

@@ -57,6 +57,7 @@ mod deciding;
 mod displacement;
 mod edge_field;
 mod editable;
+mod fas;
 mod flat;
 mod gregory;
 mod options;
@@ -73,6 +74,7 @@ mod qas;
 mod quads;
 mod quadtree;
 mod regular;
+mod spline;
 mod spokes;
 mod stam;
 mod surface;
@@ -99,7 +101,7 @@ pub use change::{PassChange, Update};
 pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
 pub use editable::Editable;
-pub use options::{MethodOptions, TableNormals, TableOptions};
+pub use options::{IsolationOptions, MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use pass::{Pass, Twin, is_on_hexagon};
 pub use points::Points;
@@ -119,6 +121,8 @@ pub enum Reproduces {
     /// The limit of the scheme, to within this, at the corners of a grid of 2^([`Pass::max_level`] - 1) segments a patch's edge, and
     /// linear between them: see [`Pass::is_on_lattice`].
     LimitOnLattice(f64),
+    /// The limit of the scheme, to within this, but for end caps around what is irregular at the last level, see [`Pass::caps`]: of these only the corners.
+    LimitBesideCaps(f64),
     /// The limit of the scheme, to within this and with its normals, at the corners and the middles of the edges of each triangle, see
     /// [`is_on_hexagon`]; between them it only looks like the limit.
     LimitOnHexagon(f64),
@@ -134,7 +138,9 @@ impl Reproduces {
         match self {
             Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => true,
             Reproduces::Faces(_) => scheme == Scheme::Bilinear,
-            Reproduces::LimitOnHexagon(_) | Reproduces::Itself => false,
+            Reproduces::LimitBesideCaps(_) | Reproduces::LimitOnHexagon(_) | Reproduces::Itself => {
+                false
+            }
         }
     }
 
@@ -142,7 +148,7 @@ impl Reproduces {
     fn remoteness(self) -> u32 {
         match self {
             Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => 0,
-            Reproduces::LimitOnHexagon(_) => 1,
+            Reproduces::LimitBesideCaps(_) | Reproduces::LimitOnHexagon(_) => 1,
             Reproduces::Itself => 2,
             Reproduces::Faces(_) => 3,
         }
@@ -179,6 +185,8 @@ pub struct Method {
     pub contract: Contract,
     /// Whether it goes by [`MethodOptions::tables`].
     pub uses_tables: bool,
+    /// Whether it goes by [`MethodOptions::isolation`].
+    pub isolates: bool,
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
@@ -273,6 +281,7 @@ pub const METHODS: &[Method] = &[
     quadtree::METHOD,
     qas::METHOD,
     bft::METHOD,
+    fas::METHOD,
     gregory::METHOD,
     acc::METHOD,
     stam::METHOD,

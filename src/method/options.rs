@@ -10,6 +10,8 @@ pub struct MethodOptions {
     pub plans: PlanOptions,
     /// Of methods with tables of basis functions: see [`Method::uses_tables`](super::Method::uses_tables).
     pub tables: TableOptions,
+    /// Of methods that refine around features: see [`Method::isolates`](super::Method::isolates).
+    pub isolation: IsolationOptions,
 }
 
 impl From<PlanOptions> for MethodOptions {
@@ -21,12 +23,57 @@ impl From<PlanOptions> for MethodOptions {
     }
 }
 
+impl From<IsolationOptions> for MethodOptions {
+    fn from(isolation: IsolationOptions) -> MethodOptions {
+        MethodOptions {
+            isolation,
+            ..Default::default()
+        }
+    }
+}
+
 impl From<TableOptions> for MethodOptions {
     fn from(tables: TableOptions) -> MethodOptions {
         MethodOptions {
             tables,
             ..Default::default()
         }
+    }
+}
+
+/// How far refinement isolates what is irregular (Nießner, Loop, Meyer, DeRose 2012).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IsolationOptions {
+    /// Refinements of the control mesh around extraordinary vertices, 1..=6; what is still irregular then has an end cap. Up to tess level 2^level all
+    /// vertices of caps are corners.
+    pub level: u32,
+}
+
+impl Default for IsolationOptions {
+    /// Level 3, which serves tess level 8.
+    fn default() -> IsolationOptions {
+        IsolationOptions { level: 3 }
+    }
+}
+
+impl IsolationOptions {
+    /// The greatest `level`.
+    pub const GREATEST_LEVEL: u32 = 6;
+
+    /// Checks the range.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when the level is out of range.
+    pub fn check(self) -> Result<IsolationOptions> {
+        if (1..=Self::GREATEST_LEVEL).contains(&self.level) {
+            return Ok(self);
+        }
+        Err(Error::Option {
+            option: "--isolation",
+            problem: format!("{} is out of range", self.level),
+            remedy: "give a level of 1 to 6; that of the tess level's binary logarithm is best"
+                .into(),
+        })
     }
 }
 

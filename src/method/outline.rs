@@ -124,24 +124,28 @@ pub(super) fn sides(topology: &Topology, part: Part, patch: &abi::Patch) -> [u32
     let n = part.domain.corners();
     let turn = (patch.flags >> abi::PATCH_TURN_SHIFT & 3) as usize;
     let is_part = edges.len() != n;
+    // The part of an n-gon at a corner has half of the edges there, as its edges 0 and 3.
+    let corner = part.corner as usize;
+    let edges_of_part = [corner, corner + edges.len() - 1].map(|i| edges[i % edges.len()]);
     std::array::from_fn(|i| {
         let side = (i.min(n - 1) + turn) % n;
         match child(patch) {
-            // The part of an n-gon at a corner has half of the edges there.
-            Child::Whole if is_part => {
-                let corner = part.corner as usize;
-                match side {
-                    0 => edges[corner],
-                    3 => edges[(corner + edges.len() - 1) % edges.len()],
-                    _ => within,
-                }
-            }
+            Child::Whole if is_part => match side {
+                0 | 3 => edges_of_part[side / 3],
+                _ => within,
+            },
             Child::Whole => edges[side],
             Child::Corner(corner) => {
                 let touches = side == corner || side == (corner + n - 1) % n;
                 if touches { edges[side] } else { within }
             }
             Child::Middle => within,
+            Child::Piece(piece) => match (piece.borders()[side], side) {
+                (false, _) => within,
+                (true, 0 | 3) if is_part => edges_of_part[side / 3],
+                (true, _) if is_part => within,
+                (true, _) => edges[side],
+            },
         }
     })
 }

@@ -39,6 +39,8 @@ pub struct Pass {
     pub max_level: u32,
     /// What the evaluation shader computes, on the CPU.
     pub twin: Twin,
+    /// Whether all patches are end caps, of which only the corners are on the limit.
+    pub caps: bool,
     /// Tells by which cell the inside of a patch is evaluated; None where patches have no plans.
     pub(super) cell: Option<CellAt>,
     /// How many control vertices bound a patch; None where they do not, see [`Pass::hull`].
@@ -77,6 +79,7 @@ impl Pass {
             scratch_products: Vec::new(),
             max_level: abi::HIGHEST_LEVEL,
             twin,
+            caps: false,
             cell: None,
             hull: None,
             is_spline: false,

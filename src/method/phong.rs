@@ -35,6 +35,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
+    isolates: false,
     covers: vertices::whole_faces,
     prepare,
     edits: None,

@@ -33,7 +33,7 @@ pub struct Points {
 /// What a point becomes in a step. Masks of a limit may name different vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Row<'a> {
-    /// Position from control vertices.
+    /// Position from control vertices, or from points of earlier steps.
     Blend(&'a Mask),
     /// Position and tangents from control vertices.
     Limit([&'a Mask; 3]),
@@ -134,10 +134,21 @@ impl Points {
                 sum + term.position * vertices[term.source as usize]
             })
         };
+        let of_points = || {
+            terms.iter().fold(Vec3::ZERO, |sum, term| {
+                sum + term.position * Vec3::from(points[term.source as usize].position)
+            })
+        };
         let normal = match kind {
             abi::POINTS_BLEND => {
                 return Point {
                     position: sum().to_array(),
+                    ..before
+                };
+            }
+            abi::POINTS_REFINE => {
+                return Point {
+                    position: of_points().to_array(),
                     ..before
                 };
             }

@@ -12,6 +12,10 @@ pub fn to_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
             [0.5 * (u + x), 0.5 * (v + y)]
         }
         Child::Middle => [0.5 * (1.0 - u), 0.5 * (1.0 - v)],
+        Child::Piece(piece) => {
+            let [x, y] = piece.place();
+            [piece.size() * (x + u), piece.size() * (y + v)]
+        }
     }
 }
 
@@ -25,6 +29,11 @@ pub fn from_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
             [2.0 * u - x, 2.0 * v - y]
         }
         Child::Middle => [1.0 - 2.0 * u, 1.0 - 2.0 * v],
+        Child::Piece(piece) => {
+            let [x, y] = piece.place();
+            let pieces = (1u32 << piece.depth) as f32;
+            [pieces * u - x, pieces * v - y]
+        }
     };
     turned(patch, own)
 }
@@ -36,6 +45,74 @@ pub(super) enum Child {
     Corner(usize),
     /// In the middle of a triangle, with its corners opposite to the triangle's.
     Middle,
+    Piece(Piece),
+}
+
+/// A piece of a quad that is halved `depth` times: so many pieces to the right and up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Piece {
+    /// 0..=15.
+    pub depth: u32,
+    /// Of 2^depth, 12 bits.
+    pub column: u32,
+    /// Of 2^depth, 12 bits.
+    pub row: u32,
+}
+
+/// The bits of a column or row.
+const PLACE_BITS: u32 = 12;
+
+impl Piece {
+    /// That of a patch.
+    pub fn of(patch: &abi::Patch) -> Piece {
+        Piece {
+            depth: patch.plan >> abi::PIECE_DEPTH_SHIFT,
+            column: patch.plan & ((1 << PLACE_BITS) - 1),
+            row: patch.plan >> PLACE_BITS & ((1 << PLACE_BITS) - 1),
+        }
+    }
+
+    /// As a patch's plan has it.
+    pub fn plan(self) -> u32 {
+        self.depth << abi::PIECE_DEPTH_SHIFT | self.row << PLACE_BITS | self.column
+    }
+
+    /// Its quarter at a corner.
+    pub fn child(self, corner: u32) -> Piece {
+        let [right, up] = [[0, 0], [1, 0], [1, 1], [0, 1]][corner as usize];
+        Piece {
+            depth: self.depth + 1,
+            column: 2 * self.column + right,
+            row: 2 * self.row + up,
+        }
+    }
+
+    /// Which of its edges lie on those of the ptex face.
+    pub fn borders(self) -> [bool; 4] {
+        let last = (1 << self.depth) - 1;
+        [
+            self.row == 0,
+            self.column == last,
+            self.row == last,
+            self.column == 0,
+        ]
+    }
+
+    /// Where its corners are in the ptex face.
+    pub fn corners(self) -> [[f32; 2]; 4] {
+        let [x, y] = self.place();
+        let at = |right: f32, up: f32| [self.size() * (x + right), self.size() * (y + up)];
+        [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)]
+    }
+
+    fn place(self) -> [f32; 2] {
+        [self.column as f32, self.row as f32]
+    }
+
+    /// Of its edges, in those of the face.
+    fn size(self) -> f32 {
+        1.0 / (1u32 << self.depth) as f32
+    }
 }
 
 pub(super) fn child(patch: &abi::Patch) -> Child {
@@ -44,6 +121,7 @@ pub(super) fn child(patch: &abi::Patch) -> Child {
         number if number < abi::CHILD_OF_TRIANGLE => {
             Child::Corner((number - abi::CHILD_OF_QUAD) as usize)
         }
+        abi::CHILD_PIECE => Child::Piece(Piece::of(patch)),
         number => match number - abi::CHILD_OF_TRIANGLE {
             corner @ 0..3 => Child::Corner(corner as usize),
             _ => Child::Middle,
@@ -63,7 +141,8 @@ fn corner_uv(patch: &abi::Patch, corner: usize) -> [f32; 2] {
 fn turn(patch: &abi::Patch) -> (u32, bool) {
     let child = patch.flags >> abi::PATCH_CHILD_SHIFT & 15;
     let turn = patch.flags >> abi::PATCH_TURN_SHIFT & 3;
-    (turn, child >= abi::CHILD_OF_TRIANGLE)
+    let of_triangle = abi::CHILD_OF_TRIANGLE..abi::CHILD_PIECE;
+    (turn, of_triangle.contains(&child))
 }
 
 fn turned_back(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
@@ -91,6 +170,24 @@ fn turned(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pieces_lead_to_the_ptex_face_and_back() {
+        let mut piece = Piece::default();
+        for corner in [1, 2, 3, 0, 2, 2] {
+            piece = piece.child(corner);
+            let patch = abi::Patch {
+                flags: abi::CHILD_PIECE << abi::PATCH_CHILD_SHIFT,
+                plan: piece.plan(),
+                ..Default::default()
+            };
+            assert_eq!(Piece::of(&patch), piece);
+            for uv in [[0.0, 0.0], [0.25, 0.5], [1.0, 0.0], [0.0, 1.0]] {
+                assert_eq!(from_ptex(&patch, to_ptex(&patch, uv)), uv);
+            }
+        }
+        assert_eq!((piece.column, piece.row), (0b110011, 0b011011));
+    }
 
     #[test]
     fn children_and_turns_lead_to_the_ptex_face_and_back() {

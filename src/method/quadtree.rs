@@ -53,6 +53,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
+    isolates: false,
     covers: bounded::check,
     prepare,
     edits: Some(editable),

@@ -5,8 +5,9 @@ use glam::{Vec2, Vec3};
 
 use crate::abi;
 use crate::mesh::topology::Topology;
+use crate::method::spline::bspline;
 use crate::method::surface::Surface;
-use crate::patch::bspline::{Basis, basis_of};
+use crate::patch::bspline::basis_of;
 use crate::plan::SmoothQuads;
 
 /// Where a point of a patch lies. Twin of `glsl/lib/border.glsl`.
@@ -49,29 +50,6 @@ pub fn turned_round(t: f32, backwards: bool) -> [f32; 2] {
         [pair[1], pair[0]]
     } else {
         pair
-    }
-}
-
-/// Sum of four weighted points, the same bits from either end: on edges and at corners one of the outer weights is zero, and the others
-/// are symmetric about the second or third point. Twin of `blend` in `glsl/lib/bspline.glsl`.
-fn blend(w: [f32; 4], p: [Vec3; 4]) -> Vec3 {
-    (w[0] * p[0] + w[2] * p[2]) + (w[1] * p[1] + w[3] * p[3])
-}
-
-/// The products of two bases, with control points from `point`; rows along u first.
-pub fn bspline(
-    u: Basis<f32>,
-    v: Basis<f32>,
-    scale: f32,
-    point: impl Fn(usize, usize) -> Vec3,
-) -> Surface {
-    let rows = [0, 1, 2, 3].map(|y| [0, 1, 2, 3].map(|x| point(x, y)));
-    let values = rows.map(|row| blend(u.value, row));
-    let derivatives = rows.map(|row| blend(u.derivative, row));
-    Surface {
-        position: blend(v.value, values),
-        du: scale * blend(v.value, derivatives),
-        dv: scale * blend(v.derivative, values),
     }
 }
 

@@ -7,7 +7,7 @@
 //! belongs to the edge: its *field*. At the ends it follows from the tangents, and the normal on the edge is u x x for both faces, to the last bit.
 
 mod edge;
-mod ring;
+pub mod ring;
 
 use rustc_hash::FxHashMap;
 
@@ -261,7 +261,7 @@ impl Family {
 }
 
 /// A weighted sum of masks, each vertex once.
-fn sum(parts: &[(f64, &Mask)]) -> Mask {
+pub fn sum(parts: &[(f64, &Mask)]) -> Mask {
     let scaled = |&(scale, mask): &(f64, &Mask)| {
         let scaled = mask
             .iter()

@@ -41,6 +41,7 @@ pub const METHOD: Method = Method {
         watertight: true,
     },
     uses_tables: false,
+    isolates: false,
     covers: net::check,
     prepare,
     edits: None,

@@ -27,7 +27,7 @@ pub use masks::{Blend, Mask};
 pub(crate) use plain::is_plain_edge;
 pub use refine::{Refinement, refine};
 pub(crate) use refine::{refine_edge, refine_vertex};
-pub(crate) use regular::{BsplinePatch, ControlPoint, bspline_patch};
+pub(crate) use regular::{BsplinePatch, ControlPoint, CornerPoints, bspline_patch, corner_points};
 pub(crate) use schemes::rings as scheme_rings;
 pub use schemes::vertex_limit;
 pub use split::refine_all;

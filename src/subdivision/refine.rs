@@ -4,6 +4,7 @@
 //! from faces that touch the parent. So a step keeps the children of some cells and the faces that touch them, and the same holds
 //! for the next step. What lies on the rim of such a topology has the wrong rules; no cell ever asks for it.
 
+use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use crate::mesh::CreaseMethod;
@@ -85,12 +86,39 @@ fn neighbours(
     all
 }
 
+/// Cells to look up: a few one by one, many by a set.
+struct Chosen<'a> {
+    cells: &'a [(u32, u32)],
+    set: FxHashSet<(u32, u32)>,
+}
+
+/// So many cells are looked at one by one.
+const FEW: usize = 16;
+
+impl Chosen<'_> {
+    fn new(cells: &[(u32, u32)]) -> Chosen<'_> {
+        let many = cells.iter().filter(|_| cells.len() > FEW);
+        Chosen {
+            cells,
+            set: many.copied().collect(),
+        }
+    }
+
+    fn has(&self, cell: (u32, u32)) -> bool {
+        match self.cells.len() > FEW {
+            true => self.set.contains(&cell),
+            false => self.cells.contains(&cell),
+        }
+    }
+}
+
 /// Refines the given children, each a face and a corner of it, with everything that touches them. Those of corners that the topology has not are left
 /// out.
 pub fn refine(parent: &Topology, cells: &[(u32, u32)]) -> Refinement {
     let is_corner = |&(face, corner): &(u32, u32)| (corner as usize) < parent.face(face).len();
     let cells: SmallVec<[(u32, u32); 8]> = cells.iter().copied().filter(is_corner).collect();
     let mut step = Step::new(parent);
+    let chosen = Chosen::new(&cells);
     let mut faces: Vec<[u32; 4]> = Vec::with_capacity(4 * cells.len() + 12);
     for &(face, corner) in &cells {
         faces.push(child(parent, face, corner).map(|origin| step.number(origin)));
@@ -103,7 +131,7 @@ pub fn refine(parent: &Topology, cells: &[(u32, u32)]) -> Refinement {
         for corner in 0..parent.face(face).len() as u32 {
             let child = child(parent, face, corner);
             if child.iter().any(|&origin| step.known(origin) < touched)
-                && !cells.contains(&(face, corner))
+                && !chosen.has((face, corner))
             {
                 faces.push(child.map(|origin| step.number(origin)));
             }

@@ -51,7 +51,7 @@ pub struct BsplinePatch {
 /// The points around a corner that lie outside of the face, in the corner's own frame: `along` lies opposite to the next vertex, `beside`
 /// opposite to the previous one, `diagonal` opposite to the face; `past_previous` and `past_next` beside the face, beyond its edge to
 /// the previous and to the next vertex.
-pub(super) struct CornerPoints {
+pub struct CornerPoints {
     pub along: ControlPoint,
     pub beside: ControlPoint,
     pub diagonal: ControlPoint,
@@ -115,7 +115,7 @@ fn single_crease(
 }
 
 /// The points around a corner of a quad, or None when its vertex is not regular.
-pub(super) fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPoints> {
+pub fn corner_points(topology: &Topology, face: u32, corner: u32) -> Option<CornerPoints> {
     let vertices = topology.face(face);
     let [own, next, opposite, previous] = [0, 1, 2, 3].map(|i| vertices[(corner as usize + i) % 4]);
     let fan = topology.fan_within(face, corner, 4)?;

@@ -113,7 +113,8 @@ pub fn levels(
 /// 2^`max_level` and at most 64; of a triangle the last counts twice.
 ///
 /// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
-/// fractional-even (Brainerd et al. 2016, section 7.2).
+/// fractional-even (Brainerd et al. 2016, section 7.2). A piece has what its face's edges have after as many halvings, and before two smaller pieces
+/// likewise twice the segments of each.
 pub fn levels_of_edges(
     domain: Domain,
     patch: &abi::Patch,
@@ -126,14 +127,10 @@ pub fn levels_of_edges(
         Spacing::Equal => (level * 0.5).ceil(),
         Spacing::FractionalEven => 2.0 * (level * 0.25).ceil(),
     };
+    // Once for a part of an n-gon, and as often as the face of a piece is halved.
+    let halvings = halvings(patch);
+    let edges = edges.map(|level| (0..halvings).fold(level, |level, _| half(level)));
     let inside = edges.into_iter().fold(0.0, f32::max);
-    if patch.flags & abi::PATCH_HALF != 0 {
-        return Levels {
-            domain,
-            edges: edges.map(half),
-            inside: half(inside),
-        };
-    }
     let even = |edge: usize| patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
     let level = |edge: usize| match edges[edge] {
         level if even(edge) => 2.0 * half(level),
@@ -144,6 +141,17 @@ pub fn levels_of_edges(
         edges: [0, 1, 2, 3].map(level),
         inside,
     }
+}
+
+/// How often the edges of the control mesh are halved to make those of a patch. Twin of `patch_halvings` in `glsl/lib/half_level.glsl`.
+fn halvings(patch: &abi::Patch) -> u32 {
+    let is_piece = patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE;
+    let depth = if is_piece {
+        patch.plan >> abi::PIECE_DEPTH_SHIFT
+    } else {
+        0
+    };
+    depth + u32::from(patch.flags & abi::PATCH_HALF != 0)
 }
 
 impl Levels {

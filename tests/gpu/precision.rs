@@ -42,7 +42,7 @@ pub fn from_twin(model: &Model, prepared: &Prepared, frame: &Frame, step: usize)
 }
 
 /// Against the truth of a method's contract (linear faces where it promises no limit), every `step`th vertex. Of one that promises the limit on
-/// a lattice only the vertices there, and no normals.
+/// a lattice only the vertices there, and no normals; none of end caps.
 pub fn from_truth(
     model: &Model,
     method: &Method,
@@ -53,7 +53,9 @@ pub fn from_truth(
     let own = model.mesh().options().scheme;
     let on_lattice = matches!(method.contract.reproduces, Reproduces::LimitOnLattice(_));
     let scheme = match method.contract.reproduces {
-        Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) => own,
+        Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) | Reproduces::LimitBesideCaps(_) => {
+            own
+        }
         Reproduces::Faces(_) if own == Scheme::CatmullClark => Scheme::Bilinear,
         // No truth in f64, or in few places, which have a test of their own: the twin will do.
         Reproduces::LimitOnHexagon(_) | Reproduces::Faces(_) | Reproduces::Itself => {
@@ -65,6 +67,10 @@ pub fn from_truth(
     let mut worst = Worst::default();
     for (pass, vertex) in sampled(prepared, frame, step) {
         if on_lattice && !pass.is_on_lattice(vertex.uv) {
+            continue;
+        }
+        // End caps are held to the twin.
+        if pass.caps {
             continue;
         }
         let patch = &pass.patches[vertex.patch_number as usize];

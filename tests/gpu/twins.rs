@@ -185,6 +185,7 @@ fn limit(method: &Method) -> f64 {
     match method.contract.reproduces {
         Reproduces::Limit(most)
         | Reproduces::LimitOnLattice(most)
+        | Reproduces::LimitBesideCaps(most)
         | Reproduces::LimitOnHexagon(most)
         | Reproduces::Faces(most) => most,
         Reproduces::Itself => 1e-6,

@@ -11,8 +11,8 @@ use clap::{Args, ValueEnum};
 use hullform::Error;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{
-    METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method, method_for,
-    prepare_by_default_with,
+    IsolationOptions, METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method,
+    method_for, prepare_by_default_with,
 };
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -236,7 +236,7 @@ impl Chosen {
     }
 }
 
-/// How tables of basis functions are made: options of whatever prepares a model for drawing.
+/// How tables of basis functions are made, and features isolated: options of whatever prepares a model for drawing.
 #[derive(Args)]
 pub struct Tables {
     /// Level of tables of basis functions, 1 to 6: a patch has 2^N segments an edge [default: 5]
@@ -248,6 +248,9 @@ pub struct Tables {
     /// Normals of the limit, by tables of tangents, instead of subdivision shading
     #[arg(long, conflicts_with = "shading_level")]
     geometric_normals: bool,
+    /// Refinements around what is irregular before end caps, 1 to 6: up to level 2^N all that is drawn is on the limit [default: 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=6))]
+    isolation: Option<u32>,
 }
 
 impl Tables {
@@ -256,23 +259,30 @@ impl Tables {
     /// # Errors
     /// [`Error::Option`] when something is asked for that none of them uses.
     pub fn options(&self, methods: &[&Method]) -> hullform::Result<MethodOptions> {
-        match self.asked() {
-            Some(option) if !methods.iter().any(|method| method.uses_tables) => {
-                Err(useless(option, methods))
-            }
-            _ => Ok(MethodOptions::from(self.tables())),
+        let mut asked = self.asked();
+        if let Some((option, user)) =
+            asked.find(|(_, user)| !methods.iter().any(|m| (user.uses)(m)))
+        {
+            return Err(useless(option, &user, methods));
         }
+        let isolation = self.isolation.map(|level| IsolationOptions { level });
+        Ok(MethodOptions {
+            tables: self.tables(),
+            isolation: isolation.unwrap_or_default(),
+            ..MethodOptions::default()
+        })
     }
 
-    /// The first option that was given.
-    fn asked(&self) -> Option<&'static str> {
+    /// The options that were given, and who uses them.
+    fn asked(&self) -> impl Iterator<Item = (&'static str, User)> {
         let given = [
-            ("--table-level", self.table_level.is_some()),
-            ("--shading-level", self.shading_level.is_some()),
-            ("--geometric-normals", self.geometric_normals),
+            ("--table-level", self.table_level.is_some(), TABLES),
+            ("--shading-level", self.shading_level.is_some(), TABLES),
+            ("--geometric-normals", self.geometric_normals, TABLES),
+            ("--isolation", self.isolation.is_some(), ISOLATION),
         ];
-        let mut given = given.into_iter().filter(|(_, given)| *given);
-        given.next().map(|(option, _)| option)
+        let given = given.into_iter().filter(|(_, given, _)| *given);
+        given.map(|(option, _, user)| (option, user))
     }
 
     fn tables(&self) -> TableOptions {
@@ -289,21 +299,40 @@ impl Tables {
     }
 }
 
-/// An option of tables, and methods that have none.
-fn useless(option: &'static str, methods: &[&Method]) -> Error {
+/// Who uses an option: what the others lack, what those have that do, and which these are.
+#[derive(Clone, Copy)]
+struct User {
+    lack: &'static str,
+    have: &'static str,
+    uses: fn(&Method) -> bool,
+}
+
+const TABLES: User = User {
+    lack: "no tables are used",
+    have: "has tables",
+    uses: |method| method.uses_tables,
+};
+
+const ISOLATION: User = User {
+    lack: "nothing is refined around features",
+    have: "refines",
+    uses: |method| method.isolates,
+};
+
+/// An option, and methods that do not use it.
+fn useless(option: &'static str, user: &User, methods: &[&Method]) -> Error {
     let names = |methods: &mut dyn Iterator<Item = &Method>| {
         let names: Vec<&str> = methods.map(|method| method.name).collect();
         names.join(", ")
     };
+    let own = names(&mut methods.iter().copied());
+    let users = names(&mut METHODS.iter().filter(|method| (user.uses)(method)));
     Error::Option {
         option,
-        problem: format!(
-            "no tables are used by {}",
-            names(&mut methods.iter().copied())
-        ),
+        problem: format!("{} by {own}", user.lack),
         remedy: format!(
-            "leave it out, or choose a method that has tables ({})",
-            names(&mut METHODS.iter().filter(|method| method.uses_tables))
+            "leave it out, or choose a method that {} ({users})",
+            user.have
         ),
     }
 }
@@ -329,7 +358,7 @@ impl Cut {
             method,
             options,
             by_default: self.method.is_none(),
-            replaceable: self.method.is_none() && self.tables.asked().is_none(),
+            replaceable: self.method.is_none() && self.tables.asked().next().is_none(),
         })
     }
 

@@ -30,6 +30,7 @@ fn within(method: &Method) -> f64 {
     match method.contract.reproduces {
         Reproduces::Limit(most)
         | Reproduces::LimitOnLattice(most)
+        | Reproduces::LimitBesideCaps(most)
         | Reproduces::LimitOnHexagon(most)
         | Reproduces::Faces(most) => most,
         Reproduces::Itself => 1e-6,
@@ -42,6 +43,8 @@ enum Right {
     Truth(Box<LimitSurface>),
     /// The method's own, on the CPU.
     Twin(Controls),
+    /// The surface in f64 beside end caps. At their corners its positions, the method's own elsewhere; their normals are its own everywhere.
+    Caps(Box<LimitSurface>, Controls),
     /// Positions of the surface in f64 on the pass' lattice, the method's own off it; normals are its own everywhere.
     Lattice(Box<LimitSurface>, Controls),
     /// The same, and on the lattice the surface's normals as well.
@@ -72,6 +75,7 @@ fn right(
             };
             lattice(truth(model.mesh(), own, moved)?, twin())
         }
+        Reproduces::LimitBesideCaps(_) => Right::Caps(truth(model.mesh(), own, moved)?, twin()),
         Reproduces::LimitOnHexagon(_) => {
             let truth = truth(model.mesh(), own, moved)?;
             let finer = Box::new(truth.refined());
@@ -196,6 +200,15 @@ impl<'a> Ruler<'a> {
         let right = match &self.right {
             Right::Truth(truth) => self.of_truth(truth, ptex, uv),
             Right::Twin(controls) => Some(self.of_twin(controls, pass, vertex)),
+            Right::Caps(truth, _) if !pass.caps => self.of_truth(truth, ptex, uv),
+            Right::Caps(truth, controls) => {
+                let twin = self.of_twin(controls, pass, vertex);
+                let is_corner = vertex.uv.iter().all(|x| x.fract() == 0.0);
+                match self.of_truth(truth, ptex, uv).filter(|_| is_corner) {
+                    Some((position, _)) => Some((position, twin.1)),
+                    None => Some(twin),
+                }
+            }
             Right::Lattice(truth, controls) => {
                 let twin = self.of_twin(controls, pass, vertex);
                 match pass.is_on_lattice(vertex.uv) {

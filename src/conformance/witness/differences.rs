@@ -24,7 +24,10 @@ pub(super) const RULE: Rule = Rule {
 pub(super) fn has_own_normals(method: &Method, _: Scheme) -> bool {
     matches!(
         method.contract.reproduces,
-        Reproduces::Limit(_) | Reproduces::LimitOnLattice(_) | Reproduces::Faces(_)
+        Reproduces::Limit(_)
+            | Reproduces::LimitOnLattice(_)
+            | Reproduces::LimitBesideCaps(_)
+            | Reproduces::Faces(_)
     )
 }
 

@@ -9,11 +9,11 @@ use crate::abi;
 use crate::method::quadtree::NODE_KINDS;
 use crate::method::quadtree::places::place_at;
 use crate::method::quadtree::view::{self, Border};
-use crate::method::regular::{Place, bspline, exchanged, place, regular_surface};
+use crate::method::regular::{Place, exchanged, place, regular_surface};
+use crate::method::spline::{bspline, creased};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::{Cell, Pass};
-use crate::patch::bspline::{Basis, basis};
-use crate::patch::crease::crease_basis;
+use crate::patch::bspline::Basis;
 use crate::plan::{Leaf, Plans, Row, RowsView, walk};
 
 /// A plain B-spline patch.
@@ -292,34 +292,6 @@ pub(super) fn compensated_sum(terms: impl Iterator<Item = Vec3>) -> Vec3 {
         sum = next;
     }
     sum
-}
-
-/// The bases in both directions; across a crease on one of the edges the crease's own. Twin of `glsl/lib/crease.glsl`.
-fn creased(uv: Vec2, edge: u32, sharpness: f32) -> (Basis<f32>, Basis<f32>) {
-    let (mut u, mut v) = (basis(uv.x), basis(uv.y));
-    if sharpness > 0.0 {
-        match edge {
-            0 => v = crease_basis(uv.y, sharpness),
-            1 => u = reversed(crease_basis(1.0 - uv.x, sharpness)),
-            2 => v = reversed(crease_basis(1.0 - uv.y, sharpness)),
-            _ => u = crease_basis(uv.x, sharpness),
-        }
-    }
-    (u, v)
-}
-
-/// The basis of the curve run backwards.
-fn reversed(basis: Basis<f32>) -> Basis<f32> {
-    let Basis {
-        mut value,
-        mut derivative,
-    } = basis;
-    value.reverse();
-    derivative.reverse();
-    Basis {
-        value,
-        derivative: derivative.map(|weight| -weight),
-    }
 }
 
 pub(super) fn plans(pass: &Pass) -> Plans<'_> {

@@ -69,7 +69,7 @@ pub struct Arguments {
         default_value = "ring"
     )]
     residence: Vec<options::Residence>,
-    /// Nothing moves from frame to frame: what is cached is computed once. Without it caches are filled in each frame
+    /// Nothing moves from frame to frame: what is cached is computed once. Without it caches are filled in each frame, and points computed
     #[arg(long = "static")]
     is_static: bool,
     /// How many times a frame draws the surface

@@ -12,7 +12,7 @@ use super::yardstick;
 pub struct Work {
     /// Runs of the evaluating shader.
     pub evaluations: u64,
-    /// Control points that were computed: by control shaders, or into a cache.
+    /// Control points that were computed: by control shaders, into a cache, or before all patches.
     pub points: u64,
     /// Products of a weight and a point in these.
     pub products: u64,

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::rc::Rc;
 
+use ash::vk;
 use hullform::gpu::{
-    Backend, Cut, Decides, DrawList, Fill, Outcome, Pipelines, Residence, SurfaceOptions, View,
+    Backend, Cut, Decides, DrawList, Fill, Outcome, Pipelines, PointPipeline, Residence,
+    SurfaceOptions, View,
 };
 use hullform::host::{Bench, Owned, Shot, Style, TimestampQuery};
 use hullform::mesh::Model;
@@ -21,6 +23,7 @@ use crate::options::{Global, Size};
 /// What is drawn at several levels, each with its times. Triangles are made and thrown away: what they cover costs all methods the same.
 pub struct Subject<'a> {
     gpu: &'a Gpu,
+    bench: &'a Bench,
     model: String,
     method: &'static str,
     backend: Backend,
@@ -34,6 +37,8 @@ pub struct Subject<'a> {
     pipelines: Rc<Owned<Pipelines>>,
     view: View,
     clock: Option<TimestampQuery>,
+    /// What computes points from the control vertices in each frame; None where nothing moves, or there are none.
+    points: Option<Owned<PointPipeline>>,
     /// Whether the device tells if frames are whole. Elsewhere the shaders do, and all methods bear an atomic operation a vertex.
     device_counts: bool,
     levels: Vec<Level>,
@@ -124,9 +129,12 @@ impl<'a> Subject<'a> {
                 gpu: Vec::new(),
             })
         };
+        let computes = !arguments.is_static && drawing.prepared().points.count > 0;
+        let points = computes.then(|| drawing.point_pipeline()).transpose()?;
         let levels = arguments.levels.iter().map(list).collect::<Result<_>>()?;
         Ok(Subject {
             gpu,
+            bench,
             model: model_name(path),
             method,
             backend,
@@ -143,6 +151,7 @@ impl<'a> Subject<'a> {
             view,
             drawing,
             clock: TimestampQuery::new(&gpu.device)?,
+            points,
             device_counts,
             levels,
         })
@@ -169,7 +178,7 @@ impl<'a> Subject<'a> {
         Ok(())
     }
 
-    /// Draws a frame; how many control points it brought into the cache, and what the device counted.
+    /// Draws a frame, with the points that the method computes before; how many control points it brought into the cache, and what the device counted.
     fn submit(&mut self, number: usize) -> Result<(u32, Option<[u64; 3]>)> {
         let list = &self.levels[number].list;
         if !self.is_static {
@@ -191,10 +200,15 @@ impl<'a> Subject<'a> {
         // In a submission of its own: where a dispatch stands before a query of pipeline statistics in a command buffer, llvmpipe crashes (Mesa
         // 22.3.6).
         let fills = !self.drawing.surface().is_cached(list);
-        let cached = match fills {
-            true => self.drawing.cache_after(list, begin)?,
-            false => 0,
+        let cached = match (fills, &self.points) {
+            (true, _) => self.drawing.cache_after(list, begin)?,
+            (_, Some(pipeline)) => {
+                self.compute_points(pipeline, begin)?;
+                0
+            }
+            (false, None) => 0,
         };
+        let begun = fills || self.points.is_some();
         let mut batches = Vec::new();
         for round in 0..self.rounds() {
             batches.extend(list.round(round)?);
@@ -206,12 +220,30 @@ impl<'a> Subject<'a> {
             batches,
         };
         let begin = |cmd| {
-            if !fills {
+            if !begun {
                 begin(cmd);
             }
         };
         let counted = self.drawing.draw_between(&[shot], begin, end)?;
         Ok((cached, counted))
+    }
+
+    /// Computes points, after what else is recorded: in a submission of its own, as above.
+    fn compute_points(
+        &self,
+        pipeline: &PointPipeline,
+        begin: impl FnOnce(vk::CommandBuffer),
+    ) -> Result<()> {
+        let (device, layout) = (&self.gpu.device, self.bench.layout());
+        device.submit(|cmd| {
+            begin(cmd);
+            // SAFETY: recording on the device that made everything, outside of a render pass; control vertices are there since the upload.
+            unsafe {
+                let surface = self.drawing.surface();
+                surface.cmd_points(device.raw(), cmd, layout, pipeline);
+            }
+            Ok(())
+        })
     }
 
     /// How often a frame draws each batch.
@@ -252,14 +284,20 @@ impl<'a> Subject<'a> {
             let what = format!("{missing} of {predicted} vertices of a frame");
             return Err(Error::Lost { what });
         }
+        let products = match self.residence {
+            Residence::Ring => decided.products,
+            Residence::Cache if cached > 0 => self.cached_products(list),
+            Residence::Cache => 0,
+        };
+        let points = &self.drawing.prepared().points;
+        let [computed, terms] = match self.points {
+            Some(_) => [points.count as usize, points.terms.len()],
+            None => [0; 2],
+        };
         Ok(Work {
             evaluations,
-            points: u64::from(counters.points) + u64::from(cached),
-            products: match self.residence {
-                Residence::Ring => decided.products,
-                Residence::Cache if cached > 0 => self.cached_products(list),
-                Residence::Cache => 0,
-            },
+            points: u64::from(counters.points) + u64::from(cached) + computed as u64,
+            products: products + terms as u64,
             draws: batches().map(|batch| batch.draws().len() as u64).sum(),
             barriers: batches().filter(|batch| batch.waits()).count() as u64,
             decided,

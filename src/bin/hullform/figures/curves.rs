@@ -5,11 +5,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::{DVec3, Vec2};
-use hullform::abi;
+use hullform::gpu::Cut;
 use hullform::mesh::Model;
 use hullform::method::{METHODS, Method, MethodOptions, Pass, to_ptex};
 use hullform::subdivision::LimitSurface;
-use hullform::tessellation::Domain;
+use hullform::tessellation::{Domain, Spacing};
 use plotters::prelude::*;
 use serde_json::Value;
 
@@ -111,8 +111,12 @@ fn measure(method: &Method, model: &Model, truth: &LimitSurface, level: u32) -> 
         .iter()
         .flat_map(|pass| (0..pass.patches.len()).map(move |patch| (pass, patch)))
         .flat_map(|(pass, patch)| {
-            let halved = pass.patches[patch].flags & (abi::PATCH_HALF | abi::PATCH_REFINED) != 0;
-            let segments = if halved { level.div_ceil(2) } else { level };
+            let cut = Cut {
+                level: level as f32,
+                spacing: Spacing::Equal,
+            };
+            let levels = cut.levels(pass, patch);
+            let segments = levels.map_or(0, |levels| levels.inside as u32);
             lattice(pass.domain, segments)
                 .into_iter()
                 .map(move |corners| (pass, patch, corners))

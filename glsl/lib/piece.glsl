@@ -1,0 +1,42 @@
+// Pieces of ptex faces whose control points are computed points. Twin of `method/fas.rs`.
+#ifndef PIECE_GLSL
+#define PIECE_GLSL
+
+#define PIECES
+
+#include "lib/cell.glsl"
+#include "lib/control_points.glsl"
+#include "lib/levels.glsl"
+#include "lib/points.glsl"
+
+const uint CONTROL_POINTS = 1u;
+#define CONTROL_VERTICES 16
+
+#ifdef STAGE_VERTEX
+// The control shader fetches points itself.
+vec3 control_point(Patch record, uint number) { return vec3(0.0); }
+#endif
+
+#ifdef STAGE_CONTROL
+vec3 patch_point(Patch record, uint number) { return patch_control(record, number).position; }
+#endif
+
+#ifdef STAGE_EVALUATION
+// Not on sharp features, and not where an end cap meets others.
+bool has_one_normal(Patch record, vec2 uv) {
+    bvec4 on = bvec4(uv.y <= 0.0, uv.x >= 1.0, uv.y >= 1.0, uv.x <= 0.0);
+    if (!any(on)) return true;
+    uint corner = on.x && on.w ? 4u : on.x && on.y ? 5u : on.y && on.z ? 6u : on.z && on.w ? 7u : 8u;
+    uint edge = on.x ? 0u : on.y ? 1u : on.z ? 2u : 3u;
+    return (record.flags & (PATCH_CREASED << (corner < 8u ? corner : edge))) == 0u;
+}
+#endif
+
+#ifdef STAGE_FRAGMENT
+// How deep the piece lies shows as the scale does.
+Cell piece_cell(Patch record, uint kind, vec2 uv) {
+    return Cell(kind, uv, float(1u << (record.plan >> PIECE_DEPTH_SHIFT)));
+}
+#endif
+
+#endif

@@ -1,0 +1,32 @@
+// End caps of feature-adaptive subdivision: bicubic patches. Twin of `method/fas.rs`.
+#ifndef FAS_CAPS_GLSL
+#define FAS_CAPS_GLSL
+
+#include "lib/piece.glsl"
+
+const uint NEAR = 4u;
+const uint FAR = 8u;
+const uint INNER = 12u;
+
+#include "lib/bicubic.glsl"
+
+#ifdef STAGE_EVALUATION
+// Where both tangents of a corner lie along a bend of the boundary, the normal is that a little inside.
+const float INSIDE = 1.0 / 16.0;
+
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+    Inner inner = Inner(in_point[INNER], in_point[INNER + 1u], in_point[INNER + 2u], in_point[INNER + 3u]);
+    Point own = surface_point(bicubic(inner, uv));
+    if (own.normal == vec3(0.0)) {
+        precise vec2 inside = uv + INSIDE * (vec2(0.5) - uv);
+        own.normal = surface_normal(bicubic(inner, inside));
+    }
+    return own;
+}
+#endif
+
+#ifdef STAGE_FRAGMENT
+Cell cell_at(Patch record, vec2 uv) { return piece_cell(record, NODE_EXTRAORDINARY, uv); }
+#endif
+
+#endif

@@ -1,0 +1,135 @@
+//! `fas`: feature-adaptive subdivision (Nießner, Loop, Meyer, DeRose 2012, "Feature-adaptive GPU rendering of Catmull-Clark subdivision surfaces"). The control
+//! mesh is refined only around what is no bicubic B-spline, level by level; each level's faces that are one are drawn, others are refined again. Points
+//! come from a table of weights a level, over the points of the level before (section 3.1), computed once a pose. Across single semi-sharp creases patches are
+//! evaluated directly (Nießner, Loop, Greiner 2012, "Efficient evaluation of semi-smooth creases in Catmull-Clark subdivision surfaces").
+//!
+//! A patch has half of the tess level of its parent. Where one lies beside two of the next level its edge has twice their segments, so vertices meet;
+//! the paper cuts such patches into up to four domains instead (section 3.2), since fractional levels do not halve. What is irregular at the last level has an
+//! end cap (`fas/caps.rs`); the paper stops where the tess level is 1, and only corners, which are on the limit, are drawn of it.
+
+mod caps;
+mod levels;
+
+use glam::{Vec2, Vec3};
+
+use crate::abi;
+use crate::error::{Error, Place, Result};
+use crate::mesh::{Model, Scheme};
+use crate::method::bicubic::Bicubic;
+use crate::method::spline::{bspline, creased};
+use crate::method::surface::{Controls, SurfacePoint};
+use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::plan::Database;
+use crate::tessellation::Domain;
+use levels::Levels;
+
+/// The row of the table.
+pub const METHOD: Method = Method {
+    name: "fas",
+    summary: "feature-adaptive subdivision: B-spline patches of as many levels as it takes, with end caps",
+    paper: "Nießner, Loop, Meyer, DeRose 2012",
+    schemes: &[Scheme::CatmullClark],
+    domains: &[Domain::Quads],
+    contract: Contract {
+        reproduces: Reproduces::LimitBesideCaps(1e-6),
+        normals: Some(0.1),
+        interpolates: false,
+        watertight: false,
+    },
+    uses_tables: false,
+    isolates: true,
+    covers: check,
+    prepare,
+    edits: None,
+};
+
+/// The faces around a vertex, or corners of a face, that are refined: each cap there has sums over all of them.
+const MOST_AROUND: usize = 512;
+
+/// Refuses vertices and faces with too much around.
+///
+/// # Errors
+/// [`Error::Input`] with the vertex or face.
+fn check(model: &Model) -> Result<()> {
+    let topology = model.topology();
+    let refuse = |place: Place, count: usize, remedy: &str| {
+        let problem = format!(
+            "{count} patches meet there, and each has sums over all of them: no more than {MOST_AROUND} will be summed"
+        );
+        Err(Error::input(place, problem, remedy))
+    };
+    for face in 0..topology.face_count() as u32 {
+        let corners = topology.face(face).len();
+        if corners > MOST_AROUND {
+            let remedy = "cut the face into smaller ones, or choose another method";
+            return refuse(Place::Face(face as usize), corners, remedy);
+        }
+    }
+    for vertex in 0..topology.vertex_count() as u32 {
+        let faces = topology.vertex_faces(vertex).len();
+        if faces > MOST_AROUND {
+            let remedy = "divide the fan, or choose another method";
+            return refuse(Place::Vertex(vertex as usize), faces, remedy);
+        }
+    }
+    Ok(())
+}
+
+fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {
+    let level = options.isolation.check()?.level;
+    let splines = Pass::new("fas", Domain::Quads, 1, spline);
+    let caps = Pass {
+        caps: true,
+        ..Pass::new("fas_caps", Domain::Quads, 1, cap)
+    };
+    Ok(Levels::new(model, [splines, caps]).refine(level))
+}
+
+/// The points of a patch.
+fn points(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 16] {
+    let controls = &pass.controls[pass.patches[patch].controls as usize..];
+    std::array::from_fn(|i| given.points[controls[i] as usize].position.into())
+}
+
+/// A B-spline patch. Behind the points stands the sharpness of the crease, if it has one.
+fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let points = points(pass, given, patch);
+    let abi::Patch { controls, plan, .. } = pass.patches[patch];
+    let (edge, sharpness) = match plan >> abi::PIECE_CREASE_SHIFT & 7 {
+        0 => (0, 0.0),
+        edge => {
+            let bits = pass.controls[controls as usize + 16];
+            (edge - 1, f32::from_bits(bits))
+        }
+    };
+    let (u, v) = creased(uv, edge, sharpness);
+    bspline(u, v, 1.0, |x, y| points[x + 4 * y]).point()
+}
+
+/// Where both tangents of a corner lie along a bend of the boundary, the normal is that a little inside.
+const INSIDE: f32 = 1.0 / 16.0;
+
+/// An end cap: corners, the points next to each on its edge, those next to the other end, and those inside.
+fn cap(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let points = points(pass, given, patch);
+    let four = |first: usize| std::array::from_fn(|i| points[first + i]);
+    let patch = Bicubic {
+        corners: four(0),
+        near: four(4),
+        far: four(8),
+        inner: four(12),
+    };
+    let surface = patch.surface(uv);
+    let own = surface.point();
+    if own.normal != Vec3::ZERO {
+        return own;
+    }
+    let inside = uv + INSIDE * (Vec2::splat(0.5) - uv);
+    SurfacePoint {
+        normal: patch.surface(inside).normal(),
+        ..own
+    }
+}
+
+#[cfg(test)]
+mod tests;

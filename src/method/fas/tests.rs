@@ -1,0 +1,123 @@
+//! Patches beside end caps are the limit, corners of caps too, and levels meet without a gap.
+
+use glam::{DVec3, Vec2};
+
+use super::METHOD;
+use crate::frame::Cut;
+use crate::mesh::{Model, builtin};
+use crate::method::{Controls, IsolationOptions, Pass, Prepared, to_ptex};
+use crate::subdivision::LimitSurface;
+use crate::tessellation::Spacing;
+
+fn prepared(name: &str, level: u32) -> (Model, Prepared, Controls) {
+    let model = Model::new(builtin(name).expect("it is built in"));
+    let prepared = METHOD.prepare(&model, IsolationOptions { level });
+    let prepared = prepared.expect("it takes the model");
+    let controls = prepared.controls(model.positions());
+    (model, prepared, controls)
+}
+
+const MODELS: [&str; 5] = ["cube", "ngons", "hull", "creased-torus", "sheet"];
+
+/// How far a point of a patch is from the truth, over the diagonal, and by how many degrees its normal.
+fn error(
+    model: &Model,
+    truth: &LimitSurface,
+    (pass, controls): (&Pass, &Controls),
+    patch: usize,
+    uv: [f32; 2],
+) -> [f64; 2] {
+    let record = &pass.patches[patch];
+    let [u, v] = to_ptex(record, uv).map(f64::from);
+    let right = truth.evaluate(record.ptex as usize, u, v);
+    let right = right.expect("it has a surface");
+    let point = pass.evaluate(controls, patch, uv.into());
+    let away = model.placement().local(right.position);
+    let away = away.distance(point.position.as_dvec3()) / model.diagonal();
+    let (own, normal) = (point.normal.as_dvec3(), right.normal());
+    let turned = own.cross(normal).length().atan2(own.dot(normal));
+    [away, turned.to_degrees()]
+}
+
+#[test]
+fn patches_beside_caps_and_corners_of_caps_are_the_limit() {
+    for name in MODELS {
+        let (model, prepared, controls) = prepared(name, 3);
+        let truth = LimitSurface::new(model.mesh());
+        let (mut beside, mut turned, mut corners, mut within) = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
+        for pass in &prepared.passes {
+            for patch in 0..pass.patches.len() {
+                for i in 0..25 {
+                    let uv = [i % 5, i / 5].map(|x| x as f32 / 4.0);
+                    let given = (pass, &controls);
+                    let [away, degrees] = error(&model, &truth, given, patch, uv);
+                    let is_corner = uv.iter().all(|x| x.fract() == 0.0);
+                    match (pass.caps, is_corner) {
+                        (false, _) => {
+                            beside = beside.max(away);
+                            turned = turned.max(degrees);
+                        }
+                        (true, true) => corners = corners.max(away),
+                        (true, false) => within = within.max(away),
+                    }
+                }
+            }
+        }
+        println!(
+            "{name}: {beside:.1e} and {turned:.4} degrees beside caps, {corners:.1e} at their corners, {within:.1e} within"
+        );
+        assert!(
+            beside < 1e-6 && corners < 1e-6,
+            "{name}: {beside} {corners}"
+        );
+        assert!(turned < 0.1, "{name}: {turned}");
+        assert!(within < 4e-3, "{name}: {within}");
+    }
+}
+
+/// Each stretch of an edge is met by one the other way, at whatever level and spacing.
+#[test]
+fn levels_meet_without_a_gap() {
+    for (name, level) in [("cube", 2), ("ngons", 3), ("creased-torus", 2)] {
+        let (_, prepared, controls) = prepared(name, level);
+        for level in [1.0, 3.0, 8.0, 13.5] {
+            for spacing in [Spacing::Equal, Spacing::FractionalEven] {
+                let cut = Cut { level, spacing };
+                let open = open_stretches(&prepared, &controls, cut);
+                assert_eq!(open, 0, "{name} {cut:?}");
+            }
+        }
+    }
+}
+
+/// How many stretches of patches' edges have none that runs the other way.
+fn open_stretches(prepared: &Prepared, controls: &Controls, cut: Cut) -> usize {
+    let mut stretches: Vec<[DVec3; 2]> = Vec::new();
+    for pass in &prepared.passes {
+        for patch in 0..pass.patches.len() {
+            let levels = cut.levels(pass, patch).expect("it is drawn");
+            for edge in 0..4 {
+                let segments = cut.spacing.segments(levels.edges[edge]);
+                let at = |i: u32| {
+                    let t = i as f32 / segments as f32;
+                    let uv = [[t, 0.0], [1.0, t], [1.0 - t, 1.0], [0.0, 1.0 - t]][edge];
+                    let point = pass.evaluate(controls, patch, Vec2::from(uv));
+                    point.position.as_dvec3()
+                };
+                stretches.extend((0..segments).map(|i| [at(i), at(i + 1)]));
+            }
+        }
+    }
+    let near = |a: DVec3, b: DVec3| a.distance(b) < 2e-6;
+    stretches.sort_by(|a, b| (a[0].x + a[1].x).total_cmp(&(b[0].x + b[1].x)));
+    let is_met = |own: &[DVec3; 2]| {
+        let sum = own[0].x + own[1].x;
+        let from = stretches.partition_point(|other| other[0].x + other[1].x < sum - 1e-5);
+        let mut beside = stretches[from..].iter();
+        beside
+            .by_ref()
+            .take_while(|other| other[0].x + other[1].x <= sum + 1e-5)
+            .any(|other| near(other[0], own[1]) && near(other[1], own[0]))
+    };
+    stretches.iter().filter(|own| !is_met(own)).count()
+}

@@ -322,7 +322,12 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
                 let mut edit = model.mesh().edit();
                 match number % 2 {
                     0 => (0..1 + number % 4).for_each(|_| step(&mut edit, &model, &mut random)),
-                    _ => reshape(&mut edit, &model, &mut random, [400; 2]),
+                    _ => reshape(
+                        &mut edit,
+                        &model,
+                        &mut random,
+                        [model.mesh().face_count() + 8, 400],
+                    ),
                 }
                 let changes = model.apply(&edit).expect("all of it is there");
                 let update = editable
@@ -371,7 +376,7 @@ proptest! {
             let mut edit = model.mesh().edit();
             match number % 2 {
                 0 => (0..1 + number % 3).for_each(|_| step(&mut edit, &model, &mut random)),
-                _ => reshape(&mut edit, &model, &mut random, [200; 2]),
+                _ => reshape(&mut edit, &model, &mut random, [model.mesh().face_count() + 8, 400]),
             }
             let changes = model.apply(&edit).expect("all of it is there");
             editable.update(&model, &changes, &database).expect("it goes");

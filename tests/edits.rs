@@ -76,7 +76,9 @@ fn reshape(edit: &mut Edit, model: &Model, random: &mut Random, most: [usize; 2]
     });
     // Vertices that no face uses are used again.
     let unused = |&vertex: &u32| topology.vertex_faces(vertex).is_empty();
-    let mut free = (0..mesh.vertex_count() as u32).filter(unused);
+    let free: Vec<u32> = (0..mesh.vertex_count() as u32).filter(unused).collect();
+    let is_full = faces.len() + n > most[0] || mesh.vertex_count() - free.len() + n > most[1];
+    let mut free = free.into_iter();
     let mut next = mesh.vertex_count() as u32;
     let mut vertex = |edit: &mut Edit, at: [f64; 3]| {
         if let Some(vertex) = free.next() {
@@ -87,10 +89,9 @@ fn reshape(edit: &mut Edit, model: &Model, random: &mut Random, most: [usize; 2]
         next += 1;
         next - 1
     };
-    let is_full = faces.len() + n > most[0] || mesh.vertex_count() + n > most[1];
     let corner = random.below(n) as usize;
     match random.below(6) {
-        0 if faces.len() > most[0] / 2 => _ = edit.remove_face(face as u32),
+        0 if faces.len() + 60 > most[0] => _ = edit.remove_face(face as u32),
         1 if !is_full => {
             let lifted: Vec<u32> = vertices
                 .iter()
@@ -135,7 +136,8 @@ fn reshape(edit: &mut Edit, model: &Model, random: &mut Random, most: [usize; 2]
             let other = vertex(edit, centre.map(|x| x + 0.4));
             edit.add_face(&[vertices[(corner + 1) % n], vertices[corner], other]);
         }
-        _ => _ = edit.remove_face(face as u32),
+        _ if faces.len() + 60 > most[0] => _ = edit.remove_face(face as u32),
+        _ => {}
     }
 }
 
@@ -320,7 +322,12 @@ fn what_edits_influence_is_planned_again_and_draws_what_a_fresh_preparation_draw
                 let mut edit = model.mesh().edit();
                 match number % 2 {
                     0 => (0..1 + number % 4).for_each(|_| step(&mut edit, &model, &mut random)),
-                    _ => reshape(&mut edit, &model, &mut random, [400; 2]),
+                    _ => reshape(
+                        &mut edit,
+                        &model,
+                        &mut random,
+                        [model.mesh().face_count() + 8, 400],
+                    ),
                 }
                 let changes = model.apply(&edit).expect("all of it is there");
                 let update = editable
@@ -369,7 +376,7 @@ proptest! {
             let mut edit = model.mesh().edit();
             match number % 2 {
                 0 => (0..1 + number % 3).for_each(|_| step(&mut edit, &model, &mut random)),
-                _ => reshape(&mut edit, &model, &mut random, [200; 2]),
+                _ => reshape(&mut edit, &model, &mut random, [model.mesh().face_count() + 8, 400]),
             }
             let changes = model.apply(&edit).expect("all of it is there");
             editable.update(&model, &changes, &database).expect("it goes");
@@ -418,29 +425,19 @@ fn edit_many(edits: u32, every: u32) {
         }
         let mut edit = model.mesh().edit();
         match random.below(2) {
-            0 => step(&mut edit, &model, &mut random),
+            0 => {
+                step(&mut edit, &model, &mut random);
+                // No more creases than a model has, so that smooth places come back.
+                if let Some(crease) = model.mesh().creases().get(400) {
+                    edit.crease(crease.vertices[0], crease.vertices[1], 0.0);
+                }
+            }
             _ => reshape(&mut edit, &model, &mut random, most),
         }
         let changes = model.apply(&edit).expect("all of it is there");
-        // No more creases than a model has, so that smooth places come back.
-        let crease = model
-            .mesh()
-            .creases()
-            .get(400)
-            .map(|crease| crease.vertices);
-        let mut update = editable
-            .update(&model, &changes, &database)
-            .expect("it goes");
-        let mut influenced = changes.faces().to_vec();
-        if let Some([a, b]) = crease {
-            let mut edit = model.mesh().edit();
-            edit.crease(a, b, 0.0);
-            let changes = model.apply(&edit).expect("it is there");
-            update = editable
-                .update(&model, &changes, &database)
-                .expect("it goes");
-            influenced.extend(changes.faces());
-        }
+        let update = editable.update(&model, &changes, &database);
+        let update = update.expect("it goes");
+        let influenced = changes.faces();
         whole += u32::from(update.is_whole);
         shaped += u32::from(changes.is_reconnected());
         touched += influenced.len();
@@ -464,7 +461,14 @@ fn edit_many(edits: u32, every: u32) {
             });
         }
         if number % 500 == 499 {
-            println!("{} edits after {:?}", number + 1, started.elapsed());
+            let faces =
+                (0..model.mesh().face_count()).filter(|&face| !model.mesh().is_removed(face));
+            println!(
+                "{} edits after {:?}, {} faces",
+                number + 1,
+                started.elapsed(),
+                faces.count()
+            );
         }
     }
     hold_compacted(
@@ -476,6 +480,7 @@ fn edit_many(edits: u32, every: u32) {
     );
     let faces = (0..model.mesh().face_count()).filter(|&face| !model.mesh().is_removed(face));
     let (faces, grown) = (faces.count(), words(editable.prepared()));
+    assert!(faces + 100 > most[0], "faces stay about as many");
     println!(
         "{edits} edits, {shaped} of faces: {touched} faces planned again, {whole} times all anew; {faces} faces of {}, {} vertices, {grown} words",
         model.mesh().face_count(),

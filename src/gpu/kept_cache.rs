@@ -20,8 +20,11 @@ pub(super) struct KeptCache {
     /// The version that it is of now.
     version: u64,
     /// The last edits' points, with the version that each led to.
-    last: VecDeque<(u64, Vec<(usize, u32, Jobs)>)>,
+    last: VecDeque<(u64, LevelJobs)>,
 }
+
+/// Jobs of passes and levels.
+pub(super) type LevelJobs = Vec<(usize, u32, Jobs)>;
 
 /// By pass, its tables and words that have changed, of those that a cache has.
 pub(super) type CacheWords = Vec<Vec<(usize, Range<usize>)>>;
@@ -71,7 +74,7 @@ impl KeptCache {
     }
 
     /// What a pose computes again that has the points of a state; None where that is all.
-    pub fn since(&self, state: CacheState) -> Option<Vec<(usize, u32, Jobs)>> {
+    pub fn since(&self, state: CacheState) -> Option<LevelJobs> {
         let next = state.version + 1;
         let knows = state.version == self.version
             || self.last.front().is_some_and(|&(first, _)| first <= next);

@@ -1,9 +1,12 @@
 //! What a cache of control points holds: each point once, for all faces that share it.
 
+#[cfg(feature = "vulkan")]
 use std::ops::Range;
 
 use crate::abi;
-use crate::method::{Prepared, Table, Update};
+#[cfg(feature = "vulkan")]
+use crate::method::Update;
+use crate::method::{Prepared, Table};
 
 /// Levels of a cut, 0..=6: tess level 2^6 is the greatest that Vulkan promises.
 const LEVELS: usize = 7;
@@ -52,6 +55,7 @@ impl CachedPoints {
 }
 
 /// Keeps what a cache holds up with what was prepared.
+#[cfg(feature = "vulkan")]
 pub(crate) trait CacheEdits: std::fmt::Debug + Send + Sync {
     /// Brings the points up to an edit: those of patches that are other ones. The rest stays where it is. None where there is no room for them; the points are of no use
     /// then, nor is this.
@@ -64,6 +68,7 @@ pub(crate) trait CacheEdits: std::fmt::Debug + Send + Sync {
 }
 
 /// What an edit changes of a cache.
+#[cfg(feature = "vulkan")]
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CacheChange {
     /// By pass, the tables that have changed, by their numbers among [`CachedPass::tables`], and in which words.
@@ -73,6 +78,7 @@ pub(crate) struct CacheChange {
 }
 
 /// What a cache holds, and what keeps it up with edits.
+#[cfg(feature = "vulkan")]
 pub(crate) type EditedPoints = (CachedPoints, Box<dyn CacheEdits>);
 
 impl Prepared {

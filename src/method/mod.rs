@@ -93,6 +93,7 @@ use origin::Origin;
 
 #[cfg(feature = "vulkan")]
 pub(crate) use cached::CacheEdits;
+#[cfg(feature = "vulkan")]
 use cached::EditedPoints;
 pub use cached::{CachedPass, CachedPoints, Jobs};
 pub use cell::Cell;
@@ -391,7 +392,7 @@ pub struct Prepared {
     /// Tells what a cache holds of its control points.
     cached: Option<fn(&Prepared, u32) -> CachedPoints>,
     /// The same of what is edited.
-    #[cfg_attr(not(feature = "vulkan"), allow(dead_code))] // Only devices have caches.
+    #[cfg(feature = "vulkan")]
     recached: Option<fn(&Prepared, u32) -> EditedPoints>,
     /// What it was made of. Filled in by [`Method::prepare`].
     origin: Origin,

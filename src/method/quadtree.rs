@@ -12,6 +12,7 @@ mod places;
 mod plain;
 mod planned;
 mod planner;
+#[cfg(feature = "vulkan")]
 mod recached;
 mod run;
 mod store;
@@ -194,6 +195,7 @@ fn planned(
         passes,
         plans: Some(plans),
         cached: Some(cached::cached_points),
+        #[cfg(feature = "vulkan")]
         recached: Some(recached::edited_points),
         ..Prepared::default()
     };

@@ -49,6 +49,7 @@ impl Table {
 
 impl Table {
     /// Writes words from a place on, behind its end too.
+    #[cfg(feature = "vulkan")]
     pub(super) fn write(&mut self, place: usize, words: &[u32]) {
         let end = place + words.len();
         if self.words.len() < end {

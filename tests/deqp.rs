@@ -5,7 +5,8 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 use common::cli::{has_device, run as hullform, stderr, stdout};
 
@@ -239,6 +240,60 @@ fn rows(text: &str) -> BTreeMap<String, String> {
     rows.collect()
 }
 
+/// Ends a run when so many cases are done, and takes it up again: what was done is not done twice, and the results are those of a run that nobody ended.
+fn resumed_after_a_kill(filter: &str, before: usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let list = stdout(&hullform(&["verify", "--list", "--filter", filter]));
+    let names: Vec<String> = list
+        .lines()
+        .map(|name| format!("hullform.{name}"))
+        .collect();
+    std::fs::write(place("cases.txt"), names.join("\n")).expect("written");
+    let journal = place("done.txt");
+    let runner = || {
+        let mut runner = Command::new("deqp-runner");
+        runner.args(["run", "--deqp", env!("CARGO_BIN_EXE_hullform-deqp")]);
+        runner.args(["--caselist", &place("cases.txt"), "--output", &place("out")]);
+        runner.args(["--jobs", "2", "--timeout", "120", "--tests-per-group", "50"]);
+        runner.arg("--").arg(format!("--hullform-resume={journal}"));
+        runner
+    };
+    let ended = |text: &str| text.lines().filter(|line| line.ends_with("\t.")).count();
+    let done = || std::fs::read_to_string(&journal).map_or(0, |text| ended(&text));
+    let mut first = runner()
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("deqp-runner starts");
+    while done() < before && first.try_wait().expect("it is ours").is_none() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    first.kill().expect("it is ours");
+    first.wait().expect("it ends");
+    // What it had started ends with it, when it has something to say.
+    let mut last = usize::MAX;
+    while done() != last {
+        last = done();
+        std::thread::sleep(Duration::from_secs(3));
+    }
+    assert!((before..names.len()).contains(&last), "{last} were done");
+    let output = runner().output().expect("it starts");
+    let words = stdout(&output) + &stderr(&output);
+    let results = std::fs::read_to_string(place("out/results.csv")).expect("results");
+    let results = rows(&results);
+    assert_eq!(results.len(), names.len(), "{words}");
+    let known: BTreeMap<String, String> = rows(
+        &std::fs::read_to_string(&journal)
+            .expect("it is")
+            .lines()
+            .filter(|line| line.ends_with("\t."))
+            .map(|line| line.replace('\t', ",") + "\n")
+            .collect::<String>(),
+    );
+    assert_eq!(known, results);
+    assert_eq!(done(), names.len(), "each case once");
+}
+
 /// Runs these cases under deqp-runner, with what `verify` exported as its baseline, and holds the results to those of `verify`.
 fn under_runner(filter: &str, fault: Option<&str>) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -304,4 +359,47 @@ fn deqp_runner_finds_what_verify_finds() {
         under_runner("coordinates.isolines-*", Some("crash:*-equal.counts"));
         under_runner("coordinates.isolines-*", Some("wrong:*-equal.*"));
     }
+}
+
+#[test]
+fn a_run_that_was_killed_goes_on_where_it_was() {
+    if has_runner() {
+        resumed_after_a_kill("winding.triangles.*", 60);
+    }
+}
+
+/// Minutes: for `HULLFORM_DEQP=1`, or how many runs there shall be.
+#[test]
+fn deqp_runner_finds_in_the_whole_suite_what_verify_finds() {
+    let runs = std::env::var("HULLFORM_DEQP").ok();
+    let runs: u32 = runs.and_then(|runs| runs.parse().ok()).unwrap_or(0);
+    for _ in 0..runs {
+        if has_runner() {
+            under_runner("*", None);
+        }
+    }
+}
+
+/// A device on which nothing can be tessellated, such as SwiftShader: `HULLFORM_LACKING` names a driver's manifest.
+#[test]
+fn what_a_device_lacks_is_not_supported() {
+    let Some(manifest) = std::env::var_os("HULLFORM_LACKING") else {
+        println!("skipped: no driver to lack anything");
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hullform-deqp"));
+    command
+        .arg(format!("--deqp-case={PART}"))
+        .current_dir(folder.path());
+    let drivers = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+    let output = command
+        .envs(drivers.map(|name| (name, &manifest)))
+        .output()
+        .expect("it starts");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let found = printed(&stdout(&output));
+    assert!(found.len() > 5);
+    assert!(found.values().all(|status| status == "NotSupported"));
+    assert!(stdout(&output).contains("tessellationShader"));
 }

@@ -18,6 +18,10 @@ layout(location = 4) patch out Pair {
 layout(location = 6) out vec4 out_value[];
 layout(location = 7) out vec3 out_array[][2];
 layout(location = 9) out ivec2 out_whole[];
+layout(location = 10) out Corner {
+    vec3 direction;
+    float weights[2];
+} out_corner[];
 out gl_PerVertex { vec4 gl_Position; } gl_out[];
 
 void main() {
@@ -36,6 +40,8 @@ void main() {
     out_value[gl_InvocationID] = vec4(content(number, 10u, self), content(number, 11u, self), content(number, 12u, self), content(number, 13u, self));
     for (uint k = 0u; k < 2u; ++k) out_array[gl_InvocationID][k] = vec3(content(number, 20u + k, self), content(number, 22u + k, self), content(number, 24u + k, self));
     if (MODE != 2u) out_whole[gl_InvocationID] = ivec2(content(number, 30u, self), -content(number, 31u, self));
+    out_corner[gl_InvocationID].direction = vec3(content(number, 32u, self), content(number, 33u, self), content(number, 34u, self));
+    for (uint k = 0u; k < 2u; ++k) out_corner[gl_InvocationID].weights[k] = content(number, 35u + k, self);
     gl_out[gl_InvocationID].gl_Position = vec4(content(number, 40u, self), 0.5, -1.0, 1.0);
     uint writers = MODE == 1u ? draw.vertices : 1u;
     for (uint k = 0u; k < 3u; ++k) {

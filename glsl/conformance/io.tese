@@ -14,6 +14,10 @@ layout(location = 4) patch in Pair {
 layout(location = 6) in vec4 in_value[];
 layout(location = 7) in vec3 in_array[][2];
 layout(location = 9) in ivec2 in_whole[];
+layout(location = 10) in Corner {
+    vec3 direction;
+    float weights[2];
+} in_corner[];
 in gl_PerVertex { vec4 gl_Position; } gl_in[gl_MaxPatchVertices];
 
 void main() {
@@ -27,6 +31,9 @@ void main() {
             compare(in_array[i][k] == right, 120u + k, number, i);
         }
         if (MODE != 2u) compare(in_whole[i] == ivec2(content(number, 30u, i), -content(number, 31u, i)), 130u, number, i);
+        vec3 direction = vec3(content(number, 32u, i), content(number, 33u, i), content(number, 34u, i));
+        compare(in_corner[i].direction == direction, 135u, number, i);
+        for (uint k = 0u; k < 2u; ++k) compare(in_corner[i].weights[k] == content(number, 35u + k, i), 136u, number, i);
         compare(gl_in[i].gl_Position == vec4(content(number, 40u, i), 0.5, -1.0, 1.0), 140u, number, i);
     }
     for (uint k = 0u; k < 3u; ++k) {

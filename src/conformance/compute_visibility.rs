@@ -8,7 +8,7 @@
 use ash::vk;
 
 use crate::conformance::modes::module;
-use crate::conformance::raw::{Event, Program, Raster, Raw, Recorder, Scope};
+use crate::conformance::raw::{Drawing, Event, Program, Raster, Raw, Recorder, Scope};
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
 use vk::{AccessFlags as Access, PipelineStageFlags as Stage};
@@ -48,17 +48,30 @@ enum Way {
     Submission,
     /// An event that is set and waited for.
     Event,
+    /// A memory barrier of Vulkan 1.3.
+    Barrier2,
+    /// An event of Vulkan 1.3.
+    Event2,
+    /// The dependency that the pass itself has on what came before.
+    Pass,
 }
 
 impl Way {
-    const ALL: [(Way, &'static str); 6] = [
+    const ALL: [(Way, &'static str); 9] = [
         (Way::Memory, "memory_barrier"),
         (Way::Buffer, "buffer_barrier"),
         (Way::Everything, "everything"),
         (Way::Chain, "chain"),
         (Way::Submission, "submission"),
         (Way::Event, "event"),
+        (Way::Barrier2, "barrier2"),
+        (Way::Event2, "event2"),
+        (Way::Pass, "pass_dependency"),
     ];
+
+    fn is_of_1_3(self) -> bool {
+        matches!(self, Way::Barrier2 | Way::Event2)
+    }
 
     /// Records it, from one stage to the other.
     fn record(self, cmd: &Recorder<'_>, event: &Event<'_>, from: Scope, to: Scope) {
@@ -82,6 +95,10 @@ impl Way {
                 cmd.memory_barrier((Stage::TRANSFER, Access::empty()), to);
             }
             Way::Event => cmd.event(event, from, to),
+            Way::Barrier2 => cmd.memory_barrier2(from, to),
+            Way::Event2 => cmd.event2(event, from, to),
+            // It begins with the pass.
+            Way::Pass => {}
         }
     }
 }
@@ -119,14 +136,27 @@ const WORDS_A_PATCH: u32 = 16;
 const ROUNDS: u32 = 4;
 
 fn seen(context: &Context, way: Way, reader: usize, patches: u32) -> Result<Finding> {
+    let device = if way.is_of_1_3() {
+        context.full_device()?
+    } else {
+        context.device()?
+    };
+    if way.is_of_1_3() && !device.extra().synchronization2 {
+        return Ok(Finding::skip("the device has no synchronization2"));
+    }
     let count = WORDS_A_PATCH * patches;
-    let mut raw = Raw::new(context.device()?, &[4 * u64::from(count), 4 * 4], 16)?;
-    let compute = raw.compute_pipeline(module("compute.comp")?)?;
-    let draw = raw.pipeline(&program(reader)?)?;
     let wrong = context.is_wrong();
     let (_, stage) = READERS[reader];
     let written = (Stage::COMPUTE_SHADER, Access::SHADER_WRITE);
     let read = (stage, Access::SHADER_READ);
+    let sizes = [4 * u64::from(count), 4 * 4];
+    let mut raw = if way == Way::Pass && !wrong {
+        Raw::drawing(device, &sizes, 16, Drawing::Behind(written, read))?
+    } else {
+        Raw::new(device, &sizes, 16)?
+    };
+    let compute = raw.compute_pipeline(module("compute.comp")?)?;
+    let draw = raw.pipeline(&program(reader)?)?;
     let mut check = Check::default();
     for round in 0..ROUNDS {
         let constants = Constants {
@@ -134,7 +164,7 @@ fn seen(context: &Context, way: Way, reader: usize, patches: u32) -> Result<Find
             round,
             expected: round + u32::from(wrong),
         };
-        let event = Event::new(context.device()?)?;
+        let event = Event::new(device)?;
         let dispatch = |cmd: &Recorder<'_>| {
             cmd.bind_compute(compute, &constants);
             cmd.dispatch(count.div_ceil(64));

@@ -10,7 +10,7 @@ use crate::conformance::bench::{Bench, Seen};
 use crate::conformance::random::Random;
 use crate::error::{Error, Result};
 use crate::gpu::{ExtraFeatures, Slots, Workaround};
-use crate::host::{Device, Instance};
+use crate::host::{Device, DeviceInfo, Instance, devices, unsuitable};
 use crate::mesh::Model;
 
 /// How the suite is run.
@@ -144,6 +144,13 @@ impl Context {
     /// The device.
     pub fn device(&self) -> Result<&Device> {
         opened(&self.device, || self.open(ExtraFeatures::default()))
+    }
+
+    /// The device that is asked for and there, but lacks what every case needs.
+    pub(super) fn unsuitable(&self) -> Result<Option<DeviceInfo>> {
+        let instance = opened(&self.instance, || Instance::new(self.settings.validation))?;
+        let asked = self.settings.device.as_deref();
+        Ok(unsuitable(&devices(instance)?, asked))
     }
 
     /// The device with what our surfaces share.

@@ -9,9 +9,10 @@ use ash::vk;
 
 use crate::conformance::loads::{Constants, Note};
 use crate::conformance::modes::module;
-use crate::conformance::raw::{Program, Raster, Raw};
+use crate::conformance::raw::{Program, Raster, Raw, Recorder};
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
+use crate::host::Device;
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -28,14 +29,24 @@ enum Kind {
     Indexed,
     Indirect,
     IndexedIndirect,
+    /// Of several ranges in a call (`VK_EXT_multi_draw`).
+    Multi,
+    MultiIndexed,
+    /// Indirect, with their number in a buffer.
+    Counted,
+    CountedIndexed,
 }
 
 impl Kind {
-    const ALL: [Kind; 4] = [
+    const ALL: [Kind; 8] = [
         Kind::Draw,
         Kind::Indexed,
         Kind::Indirect,
         Kind::IndexedIndirect,
+        Kind::Multi,
+        Kind::MultiIndexed,
+        Kind::Counted,
+        Kind::CountedIndexed,
     ];
 
     fn name(self) -> &'static str {
@@ -44,15 +55,30 @@ impl Kind {
             Kind::Indexed => "indexed",
             Kind::Indirect => "indirect",
             Kind::IndexedIndirect => "indexed_indirect",
+            Kind::Multi => "multi",
+            Kind::MultiIndexed => "multi_indexed",
+            Kind::Counted => "counted",
+            Kind::CountedIndexed => "counted_indexed",
         }
     }
 
     fn has_indices(self) -> bool {
-        matches!(self, Kind::Indexed | Kind::IndexedIndirect)
+        matches!(
+            self,
+            Kind::Indexed | Kind::IndexedIndirect | Kind::MultiIndexed | Kind::CountedIndexed
+        )
     }
 
     fn is_indirect(self) -> bool {
-        matches!(self, Kind::Indirect | Kind::IndexedIndirect)
+        matches!(self, Kind::Indirect | Kind::IndexedIndirect) || self.is_counted()
+    }
+
+    fn is_multi(self) -> bool {
+        matches!(self, Kind::Multi | Kind::MultiIndexed)
+    }
+
+    fn is_counted(self) -> bool {
+        matches!(self, Kind::Counted | Kind::CountedIndexed)
     }
 }
 
@@ -165,7 +191,35 @@ impl Plan {
             .support
             .optional
             .multi_draw_indirect;
-        Ok((needs && !has).then_some("multiDrawIndirect or drawIndirectFirstInstance"))
+        if needs && !has {
+            return Ok(Some("multiDrawIndirect or drawIndirectFirstInstance"));
+        }
+        let extra = self.device(context)?.extra();
+        Ok(match self.kind {
+            _ if self.kind.is_multi() && !extra.multi_draw => Some("multiDraw"),
+            _ if self.kind.is_counted() && !extra.draw_indirect_count => Some("drawIndirectCount"),
+            _ => None,
+        })
+    }
+
+    /// The device that has what its calls need.
+    fn device<'a>(&self, context: &'a Context) -> Result<&'a Device> {
+        if self.kind.is_multi() || self.kind.is_counted() {
+            context.full_device()
+        } else {
+            context.device()
+        }
+    }
+
+    /// What stands behind the commands of a draw whose number is in a buffer: the patch that is drawn by nobody.
+    fn beyond(&self) -> Command {
+        Command {
+            vertices: [
+                (self.per_instance() - 1) * self.control_points,
+                self.control_points,
+            ],
+            instances: [0, 1],
+        }
     }
 
     /// Words of the arguments of all commands.
@@ -191,7 +245,12 @@ impl Plan {
                 ]
             }
         };
-        self.commands.iter().flat_map(words).collect()
+        let beyond = self.kind.is_counted().then(|| self.beyond());
+        self.commands
+            .iter()
+            .chain(&beyond)
+            .flat_map(words)
+            .collect()
     }
 
     /// The indices, two in a word where they are short.
@@ -209,6 +268,7 @@ impl Plan {
 const NOTES: usize = 0;
 const INDICES: usize = 1;
 const ARGUMENTS: usize = 2;
+const COUNTS: usize = 3;
 
 fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
     if let Some(lacking) = plan.lacks(context)? {
@@ -229,10 +289,12 @@ fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
         u64::from(patches) * size_of::<Note>() as u64,
         bytes(indices.len()),
         bytes(arguments.len()),
+        bytes(2),
     ];
-    let mut raw = Raw::new(context.device()?, &sizes, 16)?;
+    let mut raw = Raw::new(plan.device(context)?, &sizes, 16)?;
     raw.write(INDICES, &indices)?;
     raw.write(ARGUMENTS, &arguments)?;
+    raw.write(COUNTS, &[plan.commands.len() as u32, 1])?;
     let pipeline = raw.pipeline(&Program {
         control_points: plan.control_points,
         constants: vec![plan.control_points],
@@ -259,31 +321,10 @@ fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
             };
             cmd.bind_indices(INDICES, kind);
         }
-        let stride = if plan.kind.has_indices() { 20 } else { 16 };
-        let count = plan.commands.len() as u32;
         match plan.kind {
-            Kind::Draw => plan.commands.iter().for_each(|command| {
-                cmd.barrier();
-                let a = plan.arguments(command);
-                cmd.draw(
-                    a.vertex_count,
-                    a.instance_count,
-                    a.first_vertex,
-                    a.first_instance,
-                );
-            }),
-            Kind::Indexed => {
-                let arguments = plan.commands.iter().map(|c| plan.indexed_arguments(c));
-                arguments.for_each(|arguments| {
-                    cmd.barrier();
-                    cmd.draw_bound(arguments);
-                });
-            }
-            _ if plan.together => cmd.draw_several(plan.kind.has_indices(), ARGUMENTS, 0, count),
-            _ => (0..u64::from(count)).for_each(|i| {
-                cmd.barrier();
-                cmd.draw_several(plan.kind.has_indices(), ARGUMENTS, stride * i, 1);
-            }),
+            _ if plan.kind.is_indirect() => record_indirect(cmd, plan),
+            _ if plan.kind.is_multi() => record_multi(cmd, plan),
+            _ => record(cmd, plan),
         }
         cmd.barrier();
         constants.first_vertex = 0;
@@ -320,6 +361,74 @@ fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
     )))
 }
 
+/// A call a command.
+fn record(cmd: &Recorder<'_>, plan: &Plan) {
+    for command in &plan.commands {
+        cmd.barrier();
+        if plan.kind.has_indices() {
+            cmd.draw_bound(plan.indexed_arguments(command));
+            continue;
+        }
+        let a = plan.arguments(command);
+        let (vertices, instances) = (a.vertex_count, a.instance_count);
+        cmd.draw(vertices, instances, a.first_vertex, a.first_instance);
+    }
+}
+
+/// With arguments, and their number, in buffers.
+fn record_indirect(cmd: &Recorder<'_>, plan: &Plan) {
+    let indexed = plan.kind.has_indices();
+    let stride = if indexed { 20 } else { 16 };
+    let count = plan.commands.len() as u32;
+    let calls = if plan.together { 1 } else { u64::from(count) };
+    for i in 0..calls {
+        cmd.barrier();
+        let (from, own) = if plan.together {
+            (0, count)
+        } else {
+            (stride * i, 1)
+        };
+        if plan.kind.is_counted() {
+            // There could be one more than there are.
+            let number = if plan.together { 0 } else { 4 };
+            cmd.draw_counted(indexed, [ARGUMENTS, COUNTS], [from, number], own + 1);
+        } else {
+            cmd.draw_several(indexed, ARGUMENTS, from, own);
+        }
+    }
+}
+
+/// With ranges in a call: all of those whose instances are the same.
+fn record_multi(cmd: &Recorder<'_>, plan: &Plan) {
+    let alike = |a: &Command, b: &Command| plan.together && a.instances == b.instances;
+    for commands in plan.commands.chunk_by(alike) {
+        cmd.barrier();
+        let instances = plan.arguments(&commands[0]);
+        if plan.kind.has_indices() {
+            let ranges: Vec<_> = commands
+                .iter()
+                .map(|command| plan.indexed_arguments(command))
+                .map(|a| vk::MultiDrawIndexedInfoEXT {
+                    first_index: a.first_index,
+                    index_count: a.index_count,
+                    vertex_offset: a.vertex_offset,
+                })
+                .collect();
+            cmd.draw_multi_bound(&ranges, instances.instance_count, instances.first_instance);
+        } else {
+            let ranges: Vec<_> = commands
+                .iter()
+                .map(|command| plan.arguments(command))
+                .map(|a| vk::MultiDrawInfoEXT {
+                    first_vertex: a.first_vertex,
+                    vertex_count: a.vertex_count,
+                })
+                .collect();
+            cmd.draw_multi(&ranges, instances.instance_count, instances.first_instance);
+        }
+    }
+}
+
 const SOURCE: &str =
     "Vulkan, Drawing Commands; Patch Lists: vertices that make no whole patch are discarded";
 
@@ -340,7 +449,7 @@ fn cases() -> Vec<Case> {
         if kind.has_indices() {
             cases.extend(indices(kind));
         }
-        if kind.is_indirect() {
+        if kind.is_indirect() || kind.is_multi() {
             cases.extend(several(kind));
         }
     }
@@ -470,10 +579,14 @@ fn several(kind: Kind) -> impl Iterator<Item = Case> {
     counts.map(move |(count, together)| {
         let how = if together { "together" } else { "one_by_one" };
         let name = format!("several.{}-{count}_commands-{how}", kind.name());
-        let rule = "each command of an indirect draw draws what it says";
+        let rule = "each command of several in a call draws what it says, and no other is drawn";
         let command = |i: u32| Command {
             vertices: [3 * (i % 7), 3 * (1 + i % 3) + i % 2],
-            instances: [i % 5, 1 + i % 2],
+            instances: if kind.is_multi() {
+                [2, 3]
+            } else {
+                [i % 5, 1 + i % 2]
+            },
         };
         let plan = Plan {
             together,

@@ -88,6 +88,7 @@ fn what(number: u32) -> &'static str {
         110 => "a vector of a vertex",
         120..=121 => "an array of a vertex",
         130 => "whole numbers of a vertex",
+        135..=136 => "a block of a vertex",
         140 | 300 => "gl_in[].gl_Position of the evaluation shader",
         150 | 400 => "an array of the patch",
         160..=161 => "a block of the patch",

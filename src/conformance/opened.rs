@@ -6,13 +6,15 @@ use ash::vk;
 use crate::gpu::{Driver, Version};
 use crate::host::DeviceInfo;
 
-/// A device that a worker opened.
+/// A device that a worker opened, or could not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Opened {
     /// Its name.
     pub name: String,
     /// Its driver.
     pub driver: Driver,
+    /// What it lacks for every case, in words; empty if it was opened.
+    pub missing: String,
 }
 
 impl Opened {
@@ -20,7 +22,13 @@ impl Opened {
         Opened {
             name: info.name.clone(),
             driver: info.driver.clone(),
+            missing: info.missing.join(", "),
         }
+    }
+
+    /// Why no case can run on it; None where they can.
+    pub fn lacks(&self) -> Option<String> {
+        (!self.missing.is_empty()).then(|| format!("{} lacks {}", self.name, self.missing))
     }
 
     /// All of it in a line, with tabs between. What drivers call themselves has no control characters then.
@@ -32,13 +40,14 @@ impl Opened {
             version: Version(major, minor, patch),
         } = &self.driver;
         let plain = |text: &str| text.replace(char::is_control, " ");
-        let [device, name, info] = [&self.name, name, info].map(|text| plain(text));
+        let [device, name, info, missing] =
+            [&self.name, name, info, &self.missing].map(|text| plain(text));
         let id = id.as_raw();
-        format!("{id}\t{major}\t{minor}\t{patch}\t{device}\t{name}\t{info}")
+        format!("{id}\t{major}\t{minor}\t{patch}\t{device}\t{name}\t{info}\t{missing}")
     }
 
     pub(super) fn parse(line: &str) -> Option<Opened> {
-        let [id, major, minor, patch, device, name, info] =
+        let [id, major, minor, patch, device, name, info, missing] =
             line.split('\t').collect::<Vec<_>>()[..]
         else {
             return None;
@@ -46,6 +55,7 @@ impl Opened {
         let number = |text: &str| text.parse().ok();
         Some(Opened {
             name: device.into(),
+            missing: missing.into(),
             driver: Driver {
                 id: vk::DriverId::from_raw(id.parse().ok()?),
                 name: name.into(),
@@ -70,14 +80,17 @@ mod tests {
                 info: "Mesa 22.3.6 (LLVM 15.0.6)".into(),
                 version: Version(22, 3, 6),
             },
+            missing: String::new(),
         };
         assert_eq!(Opened::parse(&opened.line()), Some(opened.clone()));
         let odd = Opened {
             name: "a\tb\x1b[2J\nc".into(),
+            missing: "x, y".into(),
             ..opened
         };
-        let read = Opened::parse(&odd.line()).map(|read| read.name);
-        assert_eq!(read.as_deref(), Some("a b [2J c"));
+        let read = Opened::parse(&odd.line()).expect("it reads back");
+        assert_eq!(read.name, "a b [2J c");
+        assert_eq!(read.lacks().as_deref(), Some("a b [2J c lacks x, y"));
         assert_eq!(Opened::parse("fine"), None);
     }
 }

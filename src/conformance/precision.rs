@@ -1,11 +1,12 @@
 //! Group `precision`: `precise` expressions have the bits of their single operations, in every stage and module.
 //!
 //! Additions, subtractions and multiplications are correctly rounded, and `precise` forbids to contract or reorder them; so every stage has the bits that the CPU has. On
-//! this the equality of edges rests that several patches evaluate. A seeded fault expects the next bits.
+//! this the equality of edges rests that several patches evaluate. What is `invariant` need not have these bits, but the same ones in every pipeline that has its expression. A
+//! seeded fault expects the next bits, or another patch's.
 
 use crate::conformance::modes::module;
 use crate::conformance::random::Random;
-use crate::conformance::raw::{Program, Raster, Raw};
+use crate::conformance::raw::{Feedback, Program, Raster, Raw};
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
 
@@ -133,8 +134,83 @@ fn bits(context: &Context, expression: usize, kind: Kind, stage: usize) -> Resul
     Ok(check.finish(format!("{COUNT} results")))
 }
 
+/// Patches of the two pipelines, two triangles each.
+const PATCHES: u32 = 500;
+
+/// Words of a captured vertex: the patch's number and the values.
+const WORDS: usize = 3;
+
+/// What a pipeline with this evaluation shader gives for each patch, at all vertices.
+fn captured(
+    context: &Context,
+    evaluation: &str,
+    expression: usize,
+    numbers: &[[Vector; 2]],
+) -> Result<Vec<Vec<[u32; 2]>>> {
+    let device = context.full_device()?;
+    let bytes = 4 * WORDS as u64 * 6 * u64::from(PATCHES);
+    let sizes = [32 * u64::from(PATCHES), 4 * u64::from(PATCHES), bytes];
+    let mut raw = Raw::new(device, &sizes, 16)?;
+    raw.write(0, numbers)?;
+    let pipeline = raw.pipeline(&Program {
+        vertex: module("precision.vert")?,
+        constants: vec![expression as u32, STAGES.len() as u32],
+        raster: Raster::Discard,
+        ..Program::new(module("precision.tesc")?, module(evaluation)?)?
+    })?;
+    let feedback = Feedback::capture(device)?;
+    raw.submit_behind(
+        |cmd| feedback.reset(cmd),
+        |cmd| {
+            cmd.bind(pipeline, &0u32);
+            let into = Some((&raw, 2, bytes));
+            feedback.around(cmd, into, || cmd.draw(PATCHES, 1, 0, 0));
+        },
+    )?;
+    let [primitives, _] = feedback.counts()?;
+    let mut values = vec![Vec::new(); PATCHES as usize];
+    let vertices = raw.words(2).chunks_exact(WORDS);
+    for vertex in vertices.take(3 * primitives as usize) {
+        if let Some(own) = values.get_mut(vertex[0] as usize) {
+            own.push([vertex[1], vertex[2]]);
+        }
+    }
+    context.saw(primitives);
+    Ok(values)
+}
+
+fn invariant(context: &Context, expression: usize, kind: Kind) -> Result<Finding> {
+    if !context.device()?.possible()?.transform_feedback {
+        return Ok(Finding::skip("the device has no transformFeedback"));
+    }
+    let (name, _) = EXPRESSIONS[expression];
+    let mut random = context.random(name);
+    let numbers: Vec<[Vector; 2]> = (0..PATCHES).map(|_| kind.numbers(&mut random)).collect();
+    let one = captured(context, "invariant.tese", expression, &numbers)?;
+    let mut other = captured(context, "invariant-other.tese", expression, &numbers)?;
+    if context.is_wrong() {
+        other.rotate_left(1);
+    }
+    let mut check = Check::default();
+    for (patch, (one, other)) in one.iter().zip(&other).enumerate() {
+        check.hold(one == other && one.len() == 6, || {
+            format!("patch {patch} has {one:x?} in one pipeline and {other:x?} in the other")
+        });
+    }
+    Ok(check.finish(format!("{PATCHES} patches in two pipelines")))
+}
+
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
+    for (kind, kind_name) in Kind::ALL {
+        for (number, (expression, _)) in EXPRESSIONS.iter().enumerate() {
+            let name = format!("precision.invariant.{expression}-{kind_name}");
+            let rule = "an invariant output has the same bits in all pipelines with the same expressions for it";
+            let source = "GLSL 4.60, section 4.8, The Invariant Qualifier; SPIR-V, Invariant";
+            let run = move |context: &Context| invariant(context, number, kind);
+            cases.push(Case::new(name, rule, source, run));
+        }
+    }
     for (stage, (kind, kind_name)) in
         (0..STAGES.len()).flat_map(|stage| Kind::ALL.map(|kind| (stage, kind)))
     {

@@ -1,6 +1,8 @@
 //! Draws with shaders of the suite's own, without any of the layers that our surfaces have.
 
 mod feedback;
+mod layers;
+mod objects;
 mod program;
 mod recorder;
 mod secondary;
@@ -14,10 +16,13 @@ use crate::gpu::{Buffer, failed};
 use crate::host::{Device, Encoding, OffscreenTarget, StatisticsQuery, StorageSet};
 
 pub use feedback::Feedback;
+pub use layers::Drawing;
+pub use objects::Objects;
 pub use program::{Assembly, Program, Raster};
 pub use recorder::{Event, Recorder, Scope};
 
-use program::Place;
+use layers::Layers;
+use program::{Destination, Place};
 use secondary::Secondary;
 
 /// Stages that see the buffers and the push constants.
@@ -37,6 +42,8 @@ pub struct Raw<'a> {
     buffers: Vec<Buffer>,
     pipelines: Vec<vk::Pipeline>,
     target: OffscreenTarget,
+    /// The picture in the target's place, where it has views or is drawn without a pass.
+    layers: Option<Layers>,
 }
 
 impl<'a> Raw<'a> {
@@ -50,6 +57,7 @@ impl<'a> Raw<'a> {
             buffers: Vec::new(),
             pipelines: Vec::new(),
             target: OffscreenTarget::with_encoding(device, side, side, 1, Encoding::Unorm)?,
+            layers: None,
         };
         for &size in sizes {
             raw.make_buffer(size)?;
@@ -57,6 +65,18 @@ impl<'a> Raw<'a> {
         let set = StorageSet::new(device, STAGES, raw.buffers.iter())?;
         raw.make_layout(&set)?;
         raw.set = Some(set);
+        Ok(raw)
+    }
+
+    /// The same with a picture of another kind.
+    pub fn drawing(
+        device: &'a Device,
+        sizes: &[u64],
+        side: u32,
+        drawing: Drawing,
+    ) -> Result<Raw<'a>> {
+        let mut raw = Raw::new(device, sizes, side)?;
+        raw.layers = Some(Layers::new(device, side, drawing)?);
         Ok(raw)
     }
 
@@ -114,7 +134,21 @@ impl<'a> Raw<'a> {
 
     /// The picture of the last draw: the number of each pixel's patch plus one, 0 where nothing was drawn.
     pub fn pixels(&self) -> Vec<u32> {
-        let bytes = self.target.read_pixels();
+        match &self.layers {
+            Some(layers) => self.numbers(layers.read(0)),
+            None => self.numbers(self.target.read_pixels()),
+        }
+    }
+
+    /// The same of a view.
+    pub fn pixels_of(&self, view: u32) -> Vec<u32> {
+        match &self.layers {
+            Some(layers) => self.numbers(layers.read(view)),
+            None => self.pixels(),
+        }
+    }
+
+    fn numbers(&self, bytes: &[u8]) -> Vec<u32> {
         let pixels = bytes.chunks_exact(4);
         let word = |pixel: &[u8]| u32::from_le_bytes([pixel[0], pixel[1], pixel[2], 0]);
         let numbers: Vec<u32> = pixels.map(word).collect();
@@ -138,7 +172,10 @@ impl<'a> Raw<'a> {
         let place = Place {
             device,
             layout: self.layout,
-            render_pass: self.target.render_pass(),
+            destination: match &self.layers {
+                Some(layers) => layers.destination(),
+                None => Destination::Pass(self.target.render_pass()),
+            },
             samples: self.target.samples(),
         };
         // Parts that pipelines are linked from live as long as these.
@@ -225,7 +262,7 @@ impl<'a> Raw<'a> {
                 query.cmd_reset(cmd);
             }
             before(&self.recorder(cmd));
-            self.target.begin(cmd, [0.0; 4]);
+            self.begin(cmd, true);
             if let Some(query) = query {
                 query.cmd_begin(cmd);
             }
@@ -233,11 +270,65 @@ impl<'a> Raw<'a> {
             if let Some(query) = query {
                 query.cmd_end(cmd);
             }
-            self.target.end(cmd);
-            self.cmd_read_back(cmd);
-            self.target.cmd_copy_to_host(cmd);
+            self.end(cmd);
             Ok(())
         })
+    }
+
+    /// The same with so many draws, each in a rendering of its own, over what the one before left: there are no barriers in dynamic rendering.
+    pub fn submit_renderings(
+        &self,
+        count: usize,
+        draw: impl Fn(&Recorder<'_>, usize),
+    ) -> Result<()> {
+        // SAFETY: as above; each rendering ends before the barrier and the next one.
+        self.device.submit(|cmd| unsafe {
+            for i in 0..count {
+                if let (1.., Some(layers)) = (i, &self.layers) {
+                    layers.cmd_pause(cmd);
+                    self.recorder(cmd).barrier();
+                }
+                self.begin(cmd, i == 0);
+                draw(&self.recorder(cmd), i);
+            }
+            self.end(cmd);
+            Ok(())
+        })
+    }
+
+    /// Begins drawing over a black picture, or over what is there already, which only pictures without a pass can.
+    ///
+    /// # Safety
+    /// `cmd` is recording on this device, outside of a render pass.
+    unsafe fn begin(&self, cmd: vk::CommandBuffer, anew: bool) {
+        // SAFETY: this function's contract.
+        unsafe {
+            match &self.layers {
+                Some(layers) => layers.cmd_begin(cmd, anew),
+                None => self.target.begin(cmd, [0.0; 4]),
+            }
+        }
+    }
+
+    /// Ends it, and brings all of it to the host.
+    ///
+    /// # Safety
+    /// `cmd` is recording on this device, behind [`begin`](Self::begin).
+    unsafe fn end(&self, cmd: vk::CommandBuffer) {
+        // SAFETY: this function's contract.
+        unsafe {
+            match &self.layers {
+                Some(layers) => {
+                    layers.cmd_end(cmd);
+                    self.cmd_read_back(cmd);
+                }
+                None => {
+                    self.target.end(cmd);
+                    self.cmd_read_back(cmd);
+                    self.target.cmd_copy_to_host(cmd);
+                }
+            }
+        }
     }
 
     /// The same with so many draws, each recorded into a secondary command buffer of its own.

@@ -56,11 +56,12 @@ pub struct Runner<'a> {
 
 impl Runner<'_> {
     /// Lets a worker open the device and say which it is. A finding instead when the driver crashes or hangs meanwhile
-    /// ([`Status::Crash`], [`Status::Timeout`]), and when there is no such device ([`Status::Fail`]). None once another thread sets `stop`.
+    /// ([`Status::Crash`], [`Status::Timeout`]), and when there is no such device ([`Status::Fail`]). One that is there but lacks what every case needs says so
+    /// ([`Opened::lacks`]), and no case can run. None once another thread sets `stop`.
     pub fn device(&self, stop: &AtomicBool) -> Option<Result<Opened, Finding>> {
         let found = self.once(DEVICE, 0, START, stop, &mut None)?;
         Some(match Opened::parse(&found.measured) {
-            Some(opened) if found.status == Status::Pass => Ok(opened),
+            Some(opened) if matches!(found.status, Status::Pass | Status::Skip) => Ok(opened),
             _ => Err(found),
         })
     }

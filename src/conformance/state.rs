@@ -1,16 +1,22 @@
 //! Group `state`: draws of one submission with pipelines of other domains, spacings, patch sizes, or without patches; made and recorded in several ways.
 //!
-//! Each draw has a cell of the picture, and must leave there what it leaves when it is alone. A seeded fault compares with the next one's.
+//! Each draw has a cell of the picture, and must leave there what it leaves when it is alone. A seeded fault compares with the next one's. Several views at once have a
+//! file of their own.
+
+mod views;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
+use ash::vk;
+
 use crate::conformance::modes::{Domain, Modes, Spacing, module};
 use crate::conformance::random::Random;
-use crate::conformance::raw::{Assembly, Program, Raw, Recorder};
+use crate::conformance::raw::{Assembly, Drawing, Objects, Program, Raw, Recorder};
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
 use crate::gpu::ExtraFeatures;
+use crate::host::Device;
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -115,80 +121,142 @@ const LEVEL: f32 = 3.5;
 /// What draws leave: of each the runs of the last stage, the points of a patch, and the pixels of its cell that are drawn.
 type Left = Vec<[u32; 3]>;
 
+/// Where draws are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Recording {
+    /// In a render pass, one after the other.
+    Pass,
+    /// Each in a secondary command buffer.
+    Secondary,
+    /// Each in a dynamic rendering of its own.
+    Renderings,
+}
+
+/// What shaders are bound as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bound {
+    Pipelines,
+    /// Shader objects, each made by itself.
+    Objects,
+    /// The same, made together.
+    LinkedObjects,
+    /// By turns.
+    Both,
+}
+
 /// How pipelines are made and draws recorded.
 #[derive(Clone, Copy)]
 struct Way {
     name: &'static str,
     assembly: Assembly,
-    /// Each draw in a secondary command buffer.
-    secondary: bool,
+    recording: Recording,
+    bound: Bound,
     rule: &'static str,
     /// What the device must have.
-    has: fn(&ExtraFeatures) -> bool,
+    has: fn(&Device, &ExtraFeatures) -> bool,
 }
 
 const PLAIN: Way = Way {
     name: "",
     assembly: Assembly::Whole,
-    secondary: false,
+    recording: Recording::Pass,
+    bound: Bound::Pipelines,
     rule: "a draw leaves what it leaves when it is alone, whatever pipelines were bound before",
-    has: |_| true,
+    has: |_, _| true,
 };
 
-const WAYS: [Way; 4] = [
+const OBJECTS: Way = Way {
+    name: "objects",
+    recording: Recording::Renderings,
+    bound: Bound::Objects,
+    rule: "shaders that are bound one by one draw what a pipeline of them draws",
+    has: |device, extra| extra.shader_objects && device.info().support.optional.dynamic_rendering,
+    ..PLAIN
+};
+
+const WAYS: [Way; 8] = [
     Way {
         name: "dynamic_points",
         assembly: Assembly::DynamicPatchSize,
         rule: "patches have as many control points as the draw says, not the pipeline",
-        has: |extra| extra.dynamic_patch_size,
+        has: |_, extra| extra.dynamic_patch_size,
         ..PLAIN
     },
     Way {
         name: "linked",
         assembly: Assembly::Linked,
         rule: "a pipeline that is linked from parts draws what one draws that was made at once",
-        has: |extra| extra.pipeline_libraries,
+        has: |_, extra| extra.pipeline_libraries,
         ..PLAIN
     },
     Way {
         name: "optimised",
         assembly: Assembly::Optimised,
         rule: "the same when it is optimised as it is linked",
-        has: |extra| extra.pipeline_libraries,
+        has: |_, extra| extra.pipeline_libraries,
         ..PLAIN
     },
     Way {
         name: "secondary",
-        secondary: true,
+        recording: Recording::Secondary,
         rule: "a draw in a secondary command buffer leaves what it leaves in the primary one",
         ..PLAIN
     },
+    Way {
+        name: "rendering",
+        recording: Recording::Renderings,
+        rule: "dynamic rendering leaves what a render pass leaves",
+        has: |device, _| device.info().support.optional.dynamic_rendering,
+        ..PLAIN
+    },
+    OBJECTS,
+    Way {
+        name: "objects_linked",
+        bound: Bound::LinkedObjects,
+        ..OBJECTS
+    },
+    Way {
+        name: "objects_and_pipelines",
+        bound: Bound::Both,
+        rule: "pipelines and shaders that are bound one by one leave nothing for each other",
+        ..OBJECTS
+    },
 ];
 
-/// Draws some of the states, each by its place among all of them.
-fn draw(context: &Context, way: Way, states: &[State], which: &[usize]) -> Result<Left> {
-    let device = match way.assembly {
-        Assembly::Whole => context.device()?,
-        _ => context.full_device()?,
-    };
-    let mut raw = Raw::new(device, &[8 * MOST as u64], SIDE)?;
-    let mut pipelines = BTreeMap::new();
-    for &place in which {
-        let state = states[place];
-        if let Entry::Vacant(entry) = pipelines.entry(state) {
-            entry.insert(raw.pipeline(&state.program(way.assembly)?)?);
-        }
+/// What a draw binds.
+enum Made {
+    Pipeline(vk::Pipeline),
+    Objects(Objects),
+}
+
+impl Way {
+    /// Makes what a state is drawn with. `turn` counts the states.
+    fn make(self, raw: &mut Raw<'_>, state: State, turn: usize) -> Result<Made> {
+        let program = state.program(self.assembly)?;
+        let linked = match self.bound {
+            Bound::Objects => false,
+            Bound::LinkedObjects => true,
+            Bound::Both if turn % 2 == 0 => false,
+            Bound::Pipelines | Bound::Both => return raw.pipeline(&program).map(Made::Pipeline),
+        };
+        raw.objects(&program, linked).map(Made::Objects)
     }
-    let record = |cmd: &Recorder<'_>, place: usize| {
-        let state = states[place];
+
+    /// Draws that are alone, or in a pass, wait for each other by a barrier in it.
+    fn record(self, cmd: &Recorder<'_>, made: &Made, state: State, place: usize) {
         let constants = Constants {
             number: place as u32,
             columns: COLUMNS,
             level: LEVEL,
         };
-        cmd.barrier();
-        cmd.bind(pipelines[&state], &constants);
-        if way.assembly == Assembly::DynamicPatchSize && state.points() > 0 {
+        if self.recording != Recording::Renderings {
+            cmd.barrier();
+        }
+        match made {
+            Made::Pipeline(pipeline) => cmd.bind(*pipeline, &constants),
+            Made::Objects(objects) => cmd.bind_objects(objects, &constants),
+        }
+        if self.assembly == Assembly::DynamicPatchSize && state.points() > 0 {
             cmd.patch_size(state.points());
         }
         let vertices = if state.points() == 0 {
@@ -197,15 +265,39 @@ fn draw(context: &Context, way: Way, states: &[State], which: &[usize]) -> Resul
             state.points()
         };
         cmd.draw(vertices, 1, 0, 0);
+    }
+}
+
+/// Draws some of the states, each by its place among all of them.
+fn draw(context: &Context, way: Way, states: &[State], which: &[usize]) -> Result<Left> {
+    let device = match (way.assembly, way.bound) {
+        (Assembly::Whole, Bound::Pipelines) => context.device()?,
+        _ => context.full_device()?,
     };
-    if way.secondary {
-        raw.submit_secondary(which.len(), |cmd, i| record(cmd, which[i]))?;
-    } else {
-        raw.submit(None, |cmd| {
-            for &place in which {
-                record(cmd, place);
+    let sizes = [8 * MOST as u64];
+    let mut raw = match way.recording {
+        Recording::Renderings => Raw::drawing(device, &sizes, SIDE, Drawing::Rendering(0))?,
+        _ => Raw::new(device, &sizes, SIDE)?,
+    };
+    let mut all = BTreeMap::new();
+    for (turn, &place) in which.iter().enumerate() {
+        let state = states[place];
+        if let Entry::Vacant(entry) = all.entry(state) {
+            entry.insert(way.make(&mut raw, state, turn)?);
+        }
+    }
+    let record = |cmd: &Recorder<'_>, i: usize| {
+        let state = states[which[i]];
+        way.record(cmd, &all[&state], state, which[i]);
+    };
+    match way.recording {
+        Recording::Pass => raw.submit(None, |cmd| {
+            for i in 0..which.len() {
+                record(cmd, i);
             }
-        })?;
+        })?,
+        Recording::Secondary => raw.submit_secondary(which.len(), record)?,
+        Recording::Renderings => raw.submit_renderings(which.len(), record)?,
     }
     let (counts, pixels) = (raw.words(0), raw.pixels());
     context.saw(pixels.iter().filter(|&&pixel| pixel != 0).count() as u64);
@@ -215,20 +307,16 @@ fn draw(context: &Context, way: Way, states: &[State], which: &[usize]) -> Resul
         let own = (0..cell * cell).map(|i| pixels[((y + i / cell) * SIDE + x + i % cell) as usize]);
         own.filter(|&pixel| pixel == place + 1).count() as u32
     };
-    let places = 0..states.len();
-    Ok(places
-        .map(|place| {
-            [
-                counts[2 * place],
-                counts[2 * place + 1],
-                drawn(place as u32),
-            ]
-        })
-        .collect())
+    let left = |place: usize| {
+        let [runs, points] = [counts[2 * place], counts[2 * place + 1]];
+        [runs, points, drawn(place as u32)]
+    };
+    Ok((0..states.len()).map(left).collect())
 }
 
 fn switches(context: &Context, way: Way, states: &[State]) -> Result<Finding> {
-    if !(way.has)(&context.device()?.possible()?) {
+    let device = context.device()?;
+    if !(way.has)(device, &device.possible()?) {
         return Ok(Finding::skip(format!(
             "the device has nothing for {}",
             way.name
@@ -307,5 +395,6 @@ fn cases() -> Vec<Case> {
         }
         cases.push(case(name, PLAIN, states));
     }
+    cases.extend(views::cases());
     cases
 }

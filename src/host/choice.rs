@@ -105,6 +105,20 @@ pub(crate) fn choose(devices: &[DeviceInfo], selector: Option<&str>) -> Result<D
         .ok_or_else(|| none_suitable(devices, &asked, selector))
 }
 
+/// The device that would be taken if it lacked nothing: the best of those that `selector` asks for, as for [`Device::open`](crate::host::Device::open), where
+/// none of them will do. None where one will, or where there is none.
+pub fn unsuitable(devices: &[DeviceInfo], selector: Option<&str>) -> Option<DeviceInfo> {
+    let asked: Vec<&DeviceInfo> = match selector {
+        None => devices.iter().collect(),
+        Some(selector) => select(devices, selector),
+    };
+    if asked.iter().any(|device| device.is_suitable()) {
+        return None;
+    }
+    let best = asked.iter().min_by_key(|device| rank(device.kind));
+    best.map(|&device| device.clone())
+}
+
 fn select<'a>(devices: &'a [DeviceInfo], selector: &str) -> Vec<&'a DeviceInfo> {
     // A number is never a part of a name: the 1 of a device that is not there would be that of "LLVM 15.0.6".
     if !selector.is_empty() && selector.bytes().all(|byte| byte.is_ascii_digit()) {
@@ -219,6 +233,19 @@ mod tests {
         assert!(words.ends_with("Old 3060 lacks x, y"), "{words}");
         let words = chosen(Some("1")).expect_err("it lacks x and y");
         assert!(words.ends_with("Old 3060 lacks x, y"), "{words}");
+    }
+
+    #[test]
+    fn what_is_there_and_lacks_something_is_found_where_nothing_else_was_asked_for() {
+        let found = |selector| unsuitable(&zoo(), selector).map(|device| device.index);
+        assert_eq!(found(Some("old")), Some(1));
+        for none in [None, Some("llvm"), Some("voodoo")] {
+            assert_eq!(found(none), None, "{none:?}");
+        }
+        assert_eq!(
+            unsuitable(&zoo()[1..2], None).map(|device| device.index),
+            Some(1)
+        );
     }
 
     #[test]

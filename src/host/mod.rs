@@ -18,7 +18,7 @@ mod timestamps;
 
 pub use area::Area;
 pub use bench::{Bench, Frame, Loaded, Shot, Style, vertex_bits, vertex_key};
-pub use choice::{DeviceInfo, devices};
+pub use choice::{DeviceInfo, devices, unsuitable};
 pub use coloured::{ColouredTriangles, ColouredVertex};
 pub use device::{Device, SharedMemory};
 pub use instance::Instance;

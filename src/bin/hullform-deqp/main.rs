@@ -4,6 +4,7 @@
 
 mod caselist;
 mod deqp;
+mod journal;
 mod log;
 mod options;
 mod selection;
@@ -43,7 +44,7 @@ fn run(options: &Options) -> Result<bool> {
     let mut registry = Registry::suite();
     let info = selection::select(options, &mut registry.cases)?;
     match options.runmode {
-        RunMode::Execute => session::run(options, &info, &registry.cases),
+        RunMode::Execute => session::run(options, &info, registry.cases),
         mode => caselist::write(options, mode, &registry.cases).map(|()| true),
     }
 }

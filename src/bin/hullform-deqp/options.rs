@@ -122,6 +122,9 @@ pub struct Options {
     /// Print nothing
     #[arg(short = 'q', long)]
     pub quiet: bool,
+    /// Results of runs that were killed: cases in FILE are told and not run, others are added to it
+    #[arg(long = "hullform-resume", value_name = "FILE")]
+    pub resume: Option<PathBuf>,
     /// A deliberate fault, for tests of the suite: KIND:GLOB
     #[arg(long = "hullform-fault", hide = true)]
     fault: Option<Fault>,

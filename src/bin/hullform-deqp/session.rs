@@ -1,12 +1,14 @@
 //! A session: the cases one after the other, told as dEQP tells them.
 
 use crate::deqp::{RELEASE, RELEASE_ID, TARGET};
+use crate::journal::Journal;
 use crate::log::{Entry, Log};
 use crate::options::{Options, Switch};
 use crate::selection::RENDERER;
 use crate::waivers;
 use hullform::conformance::{
-    Case, CaseResult, Expectations, Opened, RunOptions, Runner, Status, Turn, deqp, own_program,
+    Case, CaseResult, Expectations, Finding, Opened, Report, RunOptions, Runner, Status, Turn,
+    deqp, own_program,
 };
 use hullform::error::visible;
 use hullform::host::{Device, Instance};
@@ -60,6 +62,8 @@ struct Told {
     log: Log,
     quiet: bool,
     totals: Totals,
+    /// And what outlives this run.
+    journal: Journal,
 }
 
 impl Told {
@@ -80,6 +84,28 @@ impl Told {
         self.log.begin(path)
     }
 
+    /// Tells the cases that an earlier run has results of, and returns the others.
+    fn resume(&mut self, cases: Vec<Case>) -> Result<Vec<Case>> {
+        let mut left = Vec::new();
+        for case in cases {
+            let path = deqp::path(&case.name);
+            let Some(ended) = self.journal.known(&path).cloned() else {
+                left.push(case);
+                continue;
+            };
+            let texts = texts(&case);
+            self.begin(&path)?;
+            self.end(&Entry {
+                path: &path,
+                texts: &texts.each_ref().map(String::as_str),
+                duration: 0,
+                status: &ended.status,
+                details: &ended.details,
+            })?;
+        }
+        Ok(left)
+    }
+
     fn end(&mut self, entry: &Entry<'_>) -> Result<()> {
         self.totals.count(entry.status);
         let details = visible(entry.details);
@@ -89,7 +115,7 @@ impl Told {
 }
 
 /// Runs the cases behind what is asked of the device, and says whether none failed.
-pub fn run(options: &Options, info: &[&str], cases: &[Case]) -> Result<bool> {
+pub fn run(options: &Options, info: &[&str], cases: Vec<Case>) -> Result<bool> {
     let program = own_program()?;
     let none = Expectations::default();
     let mut runner = Runner {
@@ -109,6 +135,7 @@ pub fn run(options: &Options, info: &[&str], cases: &[Case]) -> Result<bool> {
         log: Log::create(&options.log_filename, options.log_flush == Switch::Enable)?,
         quiet: options.quiet,
         totals: Totals::default(),
+        journal: Journal::default(),
     };
     told.print(&format!(
         "Writing test log into {}\ndEQP Core {RELEASE} (0x{RELEASE_ID:08x}) starting..\n  target implementation = '{TARGET}'\n",
@@ -121,7 +148,7 @@ pub fn run(options: &Options, info: &[&str], cases: &[Case]) -> Result<bool> {
         None
     };
     let waived = match (&options.waivers, &device) {
-        (Some(path), Some(device)) => waivers::read(path, device, cases)?,
+        (Some(path), Some(device)) => waivers::read(path, device, &cases)?,
         _ => Expectations::default(),
     };
     runner.expectations = &waived;
@@ -129,7 +156,15 @@ pub fn run(options: &Options, info: &[&str], cases: &[Case]) -> Result<bool> {
     if let Some(device) = &device {
         tell_device(&mut told, info, device)?;
     }
-    let complete = run_cases(options, &runner, cases, &mut told)?;
+    let lacks = device.as_ref().and_then(Opened::lacks);
+    let complete = match lacks {
+        Some(lacks) => lack(options, &cases, lacks, &mut told)?,
+        None => {
+            told.journal = Journal::open(options.resume.as_deref(), device.as_ref())?;
+            let left = told.resume(cases)?;
+            run_cases(options, &runner, &left, &mut told)?
+        }
+    };
     let ending = if complete { "DONE" } else { "ABORTED" };
     told.print(&format!("\n{ending}!\n{}", told.totals.text()))?;
     let failed = told.totals.failed;
@@ -183,6 +218,16 @@ fn tell_device(told: &mut Told, info: &[&str], device: &Opened) -> Result<()> {
     Ok(())
 }
 
+/// Tells of each case that the device cannot run it.
+fn lack(options: &Options, cases: &[Case], lacks: String, told: &mut Told) -> Result<bool> {
+    let report = Report::lost(cases, &Finding::skip(lacks));
+    for (case, result) in cases.iter().zip(&report.results) {
+        told.begin(&deqp::path(&case.name))?;
+        end(options, case, result, told)?;
+    }
+    Ok(true)
+}
+
 /// Runs the cases; false if one was the end before the last.
 fn run_cases(
     options: &Options,
@@ -212,13 +257,18 @@ fn run_cases(
     failed.map(|()| ended == cases.len())
 }
 
+/// Words about a case.
+fn texts(case: &Case) -> [String; 2] {
+    [
+        format!("Rule: {}", case.rule),
+        format!("Source: {}", case.source),
+    ]
+}
+
 /// Tells how a case ended, and returns whether that is the end of all.
 fn end(options: &Options, case: &Case, result: &CaseResult, told: &mut Told) -> Result<bool> {
     let path = deqp::path(&case.name);
-    let (rule, source) = (
-        format!("Rule: {}", case.rule),
-        format!("Source: {}", case.source),
-    );
+    let texts = texts(case);
     // The only reason that there can be here is a waiver's.
     let (status, details) = match &result.reason {
         Some(reason) => ("Waiver", reason),
@@ -226,11 +276,12 @@ fn end(options: &Options, case: &Case, result: &CaseResult, told: &mut Told) -> 
     };
     told.end(&Entry {
         path: &path,
-        texts: &[&rule, &source],
+        texts: &texts.each_ref().map(String::as_str),
         duration: (result.seconds * 1e6) as u64,
         status,
         details,
     })?;
+    told.journal.note(&path, status, details)?;
     let failed = told.totals.failed > 0 && options.terminate_on_fail == Switch::Enable;
     let lost =
         result.found == Status::DeviceLost && options.terminate_on_device_lost == Switch::Enable;

@@ -213,6 +213,9 @@ fn verify(arguments: &Arguments, global: &Global, cases: &[Case]) -> Result<()> 
     let report = match &device {
         // Interrupted before anything began.
         None => Report::default(),
+        Some(Ok(device)) if device.lacks().is_some() => {
+            Report::lost(cases, &Finding::skip(device.lacks().unwrap_or_default()))
+        }
         Some(Ok(_)) => {
             let bar = progress(cases.len());
             let report = runner.run(cases, asking.asked(), |result| show(&bar, result));

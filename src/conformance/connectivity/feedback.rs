@@ -16,6 +16,14 @@ const UNTOUCHED: u32 = 0xdead_beef;
 /// The picture's side in pixels: nobody looks.
 const SIDE: u32 = 16;
 
+/// Whose vertices are captured.
+#[derive(Clone, Copy)]
+enum Behind {
+    Evaluation,
+    /// Those of a geometry shader that hands each primitive on twice.
+    Geometry,
+}
+
 struct Captured {
     /// Each with the number of its patch, as many as were written.
     primitives: Vec<(u32, Primitive)>,
@@ -26,7 +34,13 @@ struct Captured {
 }
 
 /// Draws a patch an instance with the levels of a table, with room for so many primitives.
-fn capture(context: &Context, modes: Modes, table: &[TessLevels], room: u32) -> Result<Captured> {
+fn capture(
+    context: &Context,
+    modes: Modes,
+    table: &[TessLevels],
+    room: u32,
+    behind: Behind,
+) -> Result<Captured> {
     let device = context.full_device()?;
     let vertices = if modes.domain == Domain::Isolines {
         2
@@ -40,8 +54,15 @@ fn capture(context: &Context, modes: Modes, table: &[TessLevels], room: u32) -> 
     let mut raw = Raw::new(device, &[size_of_val(table) as u64, all], SIDE)?;
     raw.write(0, table)?;
     raw.write(1, &vec![UNTOUCHED; all as usize / 4])?;
-    let evaluation = modes.rewrite(module("feedback.tese")?);
+    let (evaluation, geometry) = match (behind, modes.domain) {
+        (Behind::Evaluation, _) => ("feedback.tese", None),
+        (Behind::Geometry, Domain::Isolines) => ("connectivity.tese", Some("feedback-lines.geom")),
+        (Behind::Geometry, _) => ("connectivity.tese", Some("feedback.geom")),
+    };
+    let geometry = geometry.map(module).transpose()?;
+    let evaluation = modes.rewrite(module(evaluation)?);
     let pipeline = raw.pipeline(&Program {
+        geometry: geometry.map(Into::into),
         raster: Raster::Discard,
         ..Program::new(module("coordinates.tesc")?, evaluation)?
     })?;
@@ -103,7 +124,7 @@ pub fn same(context: &Context, modes: Modes, table: &[TessLevels]) -> Result<Fin
     }
     let seen = seen(context, modes, table)?;
     let room = table.iter().map(most).sum();
-    let captured = capture(context, modes, table, room)?;
+    let captured = capture(context, modes, table, room, Behind::Evaluation)?;
     let mut found = sorted(captured.primitives.into_iter());
     if context.is_wrong() {
         found.pop();
@@ -131,6 +152,35 @@ pub fn same(context: &Context, modes: Modes, table: &[TessLevels]) -> Result<Fin
     Ok(check.finish(format!("{} primitives", seen.len())))
 }
 
+/// Behind a geometry shader that hands each primitive on twice, each is captured twice. A seeded fault expects one more.
+pub fn twice(context: &Context, modes: Modes, table: &[TessLevels]) -> Result<Finding> {
+    if let Some(skipped) = lacks(context)? {
+        return Ok(skipped);
+    }
+    if !context.device()?.info().support.optional.geometry_shader {
+        return Ok(Finding::skip("the device has no geometryShader"));
+    }
+    let seen = seen(context, modes, table)?;
+    let twice: Vec<_> = seen.iter().flat_map(|one| [one, one]).collect();
+    let room = 2 * table.iter().map(most).sum::<u32>();
+    let captured = capture(context, modes, table, room, Behind::Geometry)?;
+    let found = sorted(captured.primitives.into_iter());
+    let mut check = Check::default();
+    let right = twice.len() as u64 + u64::from(context.is_wrong());
+    check.hold(captured.counts == [right; 2], || {
+        format!("the query counts {:?} instead of {right}", captured.counts)
+    });
+    for (found, &seen) in found.iter().zip(&twice) {
+        check.hold(found == seen, || {
+            format!("{found:?} is captured instead of {seen:?}")
+        });
+    }
+    check.hold(captured.touched == 0, || {
+        format!("{} words beyond them are written", captured.touched)
+    });
+    Ok(check.finish(format!("{} primitives, each twice", seen.len())))
+}
+
 /// Where there is no room, whole primitives are captured as long as they fit, all of them are counted, and nothing is written beyond. On purpose one more is
 /// expected.
 pub fn full(context: &Context, modes: Modes, table: &[TessLevels]) -> Result<Finding> {
@@ -141,7 +191,7 @@ pub fn full(context: &Context, modes: Modes, table: &[TessLevels]) -> Result<Fin
     let mut check = Check::default();
     let all = seen.len() as u64;
     for room in [1, all / 2, all - 1].map(|room| room.max(1)) {
-        let captured = capture(context, modes, table, room as u32)?;
+        let captured = capture(context, modes, table, room as u32, Behind::Evaluation)?;
         let right = [room + u64::from(context.is_wrong()), all];
         check.hold(captured.counts == right, || {
             format!(

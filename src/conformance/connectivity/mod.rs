@@ -9,6 +9,8 @@ mod fill;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+pub use feedback::twice as captured_twice;
+
 use caught::{Bits, Caught, Primitive, primitives};
 
 use crate::conformance::coordinates::{TessLevels, segments, vertex_count};

@@ -1,5 +1,6 @@
 //! Queries about samples of tessellated draws.
 
+use crate::conformance::connectivity::captured_twice;
 use crate::conformance::coordinates::TessLevels;
 use crate::conformance::modes::{Domain, Modes, Spacing, module};
 use crate::conformance::raw::{Feedback, Program, Raw};
@@ -49,6 +50,51 @@ fn samples(context: &Context, modes: Modes) -> Result<Finding> {
     Ok(check.finish(format!("{all} pixels")))
 }
 
+/// The geometry shader notes each primitive, and hands it on: as often as it is counted. A seeded fault expects one more.
+fn statistics(context: &Context, modes: Modes) -> Result<Finding> {
+    let device = context.device()?;
+    let optional = device.info().support.optional;
+    if !optional.geometry_shader || !optional.pipeline_statistics_query {
+        return Ok(Finding::skip(
+            "the device has no geometryShader, or no pipelineStatisticsQuery",
+        ));
+    }
+    let name = match modes.domain {
+        Domain::Isolines => "connectivity-lines.geom",
+        _ => "connectivity.geom",
+    };
+    let query = Feedback::geometry(device)?;
+    let mut check = Check::default();
+    let mut all = 0;
+    for level in [1.0, 2.5, 7.0, 20.0] {
+        let table = [TessLevels::uniform(level)];
+        let mut raw = Raw::new(device, &[size_of_val(&table) as u64, 4], SIDE)?;
+        raw.write(0, &table)?;
+        let evaluation = modes.rewrite(module("connectivity.tese")?);
+        let pipeline = raw.pipeline(&Program {
+            geometry: Some(module(name)?.into()),
+            ..Program::new(module("coordinates.tesc")?, evaluation)?
+        })?;
+        raw.submit_behind(
+            |cmd| query.reset(cmd),
+            |cmd| {
+                cmd.bind(pipeline, &0u32);
+                query.around(cmd, None, || cmd.draw(1, 1, 0, 0));
+            },
+        )?;
+        // Each primitive once: only then are invocations that are counted those that were.
+        let noted = u64::from(raw.words(1)[0]);
+        let right = noted + u64::from(context.is_wrong());
+        let [invocations, primitives] = query.counts()?;
+        check.hold(invocations == right && primitives == right, || {
+            format!("level {level}: {invocations} invocations and {primitives} primitives are counted instead of {right}")
+        });
+        all += noted;
+    }
+    context.saw(all);
+    Ok(check.finish(format!("{all} primitives")))
+}
+
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for (domain, spacing) in Domain::ALL
@@ -61,6 +107,19 @@ pub fn cases() -> Vec<Case> {
         let source = "Vulkan, Occlusion Queries";
         cases.push(Case::new(name, rule, source, move |context| {
             samples(context, modes)
+        }));
+        let name = format!("geometry.statistics.{}-{}", domain.name(), spacing.name());
+        let rule = "pipeline statistics count the geometry shader's invocations, and what it makes";
+        let source = "Vulkan, Pipeline Statistics Queries";
+        cases.push(Case::new(name, rule, source, move |context| {
+            statistics(context, modes)
+        }));
+        let name = format!("geometry.feedback.{}-{}", domain.name(), spacing.name());
+        let rule = "transform feedback captures what the geometry shader makes, and no more";
+        let source = "Vulkan, Transform Feedback; Geometry Shader Output Primitives";
+        cases.push(Case::new(name, rule, source, move |context| {
+            let table = [1.0, 2.5, 7.0, 20.0].map(TessLevels::uniform);
+            captured_twice(context, modes, &table)
         }));
     }
     cases

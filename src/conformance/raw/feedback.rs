@@ -15,6 +15,8 @@ pub struct Feedback<'a> {
     functions: Option<ext::transform_feedback::Device>,
     pool: vk::QueryPool,
     flags: vk::QueryControlFlags,
+    /// Numbers in a result.
+    counts: usize,
 }
 
 impl<'a> Feedback<'a> {
@@ -34,6 +36,12 @@ impl<'a> Feedback<'a> {
         Feedback::query(device, kind, vk::QueryControlFlags::PRECISE)
     }
 
+    /// Counts the invocations of the geometry shader, and the primitives that it makes. The device has `pipelineStatisticsQuery` and `geometryShader`.
+    pub fn geometry(device: &'a Device) -> Result<Feedback<'a>> {
+        let kind = vk::QueryType::PIPELINE_STATISTICS;
+        Feedback::query(device, kind, vk::QueryControlFlags::empty())
+    }
+
     fn query(
         device: &'a Device,
         kind: vk::QueryType,
@@ -41,7 +49,13 @@ impl<'a> Feedback<'a> {
     ) -> Result<Feedback<'a>> {
         let info = vk::QueryPoolCreateInfo::default()
             .query_type(kind)
-            .query_count(1);
+            .query_count(1)
+            .pipeline_statistics(if kind == vk::QueryType::PIPELINE_STATISTICS {
+                vk::QueryPipelineStatisticFlags::GEOMETRY_SHADER_INVOCATIONS
+                    | vk::QueryPipelineStatisticFlags::GEOMETRY_SHADER_PRIMITIVES
+            } else {
+                Default::default()
+            });
         // SAFETY: the device is live and was opened with the feature, as the caller promises.
         let pool = unsafe { device.raw().create_query_pool(&info, None) }
             .map_err(failed("vkCreateQueryPool"))?;
@@ -50,6 +64,11 @@ impl<'a> Feedback<'a> {
             functions: None,
             pool,
             flags,
+            counts: if kind == vk::QueryType::OCCLUSION {
+                1
+            } else {
+                2
+            },
         })
     }
 
@@ -94,12 +113,12 @@ impl<'a> Feedback<'a> {
         }
     }
 
-    /// What was counted: one number, or two of a capture: primitives that were written, and that would have been with more room.
+    /// What was counted: one number, twice; or two, of a capture primitives that were written, and that would have been with more room.
     pub fn counts(&self) -> Result<[u64; 2]> {
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         let device = self.device.raw();
         let error = failed("vkGetQueryPoolResults");
-        if self.functions.is_none() {
+        if self.counts == 1 {
             let mut counts = [0u64];
             // SAFETY: one query of one 64-bit count.
             unsafe { device.get_query_pool_results(self.pool, 0, &mut counts, flags) }

@@ -77,6 +77,17 @@ impl Program {
         })
     }
 
+    /// Where the constants stand, a word each.
+    pub(super) fn entries(&self) -> Vec<vk::SpecializationMapEntry> {
+        let entry = |id: u32| {
+            vk::SpecializationMapEntry::default()
+                .constant_id(id)
+                .offset(4 * id)
+                .size(4)
+        };
+        (0..self.constants.len() as u32).map(entry).collect()
+    }
+
     /// The stages that it has, with their modules' words.
     pub(super) fn stages(&self) -> Vec<(vk::ShaderStageFlags, &[u32])> {
         let mut stages: Vec<(vk::ShaderStageFlags, &[u32])> =
@@ -99,17 +110,38 @@ impl Program {
 pub(super) struct Place<'a> {
     pub device: &'a ash::Device,
     pub layout: vk::PipelineLayout,
-    pub render_pass: vk::RenderPass,
+    pub destination: Destination,
     pub samples: vk::SampleCountFlags,
 }
 
+/// What pipelines draw in.
+#[derive(Clone, Copy)]
+pub(super) enum Destination {
+    /// The first subpass of a render pass.
+    Pass(vk::RenderPass),
+    /// Dynamic rendering to a colour of this format and in these views.
+    Rendering(vk::Format, u32),
+}
+
 impl Place<'_> {
-    fn create(
+    fn create<'a>(
         self,
-        info: vk::GraphicsPipelineCreateInfo<'_>,
+        info: vk::GraphicsPipelineCreateInfo<'a>,
         made: &mut Vec<vk::Pipeline>,
     ) -> Result<vk::Pipeline> {
-        let info = info.layout(self.layout).render_pass(self.render_pass);
+        let mut formats = [vk::Format::UNDEFINED];
+        let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let mut info = info.layout(self.layout);
+        match self.destination {
+            Destination::Pass(pass) => info = info.render_pass(pass),
+            Destination::Rendering(format, view_mask) => {
+                formats[0] = format;
+                rendering = rendering
+                    .color_attachment_formats(&formats)
+                    .view_mask(view_mask);
+                info = info.push_next(&mut rendering);
+            }
+        }
         let cache = vk::PipelineCache::null();
         // SAFETY: everything that the info points to lives through the call and is of this device.
         let new = unsafe { self.device.create_graphics_pipelines(cache, &[info], None) };
@@ -188,13 +220,7 @@ impl Program {
         let has = |part| parts.contains(part);
         let is_library = parts.as_raw().count_ones() == 1;
         let constants: &[u8] = bytemuck::cast_slice(&self.constants);
-        let entry = |id: u32| {
-            vk::SpecializationMapEntry::default()
-                .constant_id(id)
-                .offset(4 * id)
-                .size(4)
-        };
-        let entries: Vec<_> = (0..self.constants.len() as u32).map(entry).collect();
+        let entries = self.entries();
         let special = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(constants);
@@ -284,7 +310,7 @@ impl Program {
     }
 }
 
-fn attachment(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
+pub(super) fn attachment(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     vk::PipelineColorBlendAttachmentState::default()
         .color_write_mask(vk::ColorComponentFlags::RGBA)
         .blend_enable(raster == Raster::Added)
@@ -296,7 +322,7 @@ fn attachment(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
         .alpha_blend_op(vk::BlendOp::ADD)
 }
 
-fn rasterization(raster: Raster) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+pub(super) fn rasterization(raster: Raster) -> vk::PipelineRasterizationStateCreateInfo<'static> {
     let (cull, front) = match raster {
         Raster::Discard | Raster::Solid | Raster::Added => {
             (vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE)

@@ -43,6 +43,17 @@ fn memory_barrier(from: Scope, to: Scope) -> vk::MemoryBarrier<'static> {
         .dst_access_mask(to.1)
 }
 
+/// The same as a dependency of Vulkan 1.3, whose first bits are the older ones'.
+fn memory_barrier2(from: Scope, to: Scope) -> vk::MemoryBarrier2<'static> {
+    let stages = |scope: Scope| vk::PipelineStageFlags2::from_raw(scope.0.as_raw().into());
+    let accesses = |scope: Scope| vk::AccessFlags2::from_raw(scope.1.as_raw().into());
+    vk::MemoryBarrier2::default()
+        .src_stage_mask(stages(from))
+        .src_access_mask(accesses(from))
+        .dst_stage_mask(stages(to))
+        .dst_access_mask(accesses(to))
+}
+
 /// Records draws inside of the render pass. Draws of one submission that write the same memory need a [`barrier`](Self::barrier) between
 /// them.
 pub struct Recorder<'a> {
@@ -63,14 +74,24 @@ impl Recorder<'_> {
         pipeline: vk::Pipeline,
         constants: &T,
     ) {
+        // SAFETY: recording where the pipeline may be bound; all of one device.
+        unsafe { self.device.cmd_bind_pipeline(self.cmd, point, pipeline) };
+        self.bind_buffers(point, constants);
+    }
+
+    /// Binds all buffers, and sets the push constants.
+    pub(super) fn bind_buffers<T: bytemuck::NoUninit>(
+        &self,
+        point: vk::PipelineBindPoint,
+        constants: &T,
+    ) {
         let bytes = bytemuck::bytes_of(constants);
         let layout = self.raw.layout;
         let sets = self.raw.set.as_slice();
         let sets: Vec<vk::DescriptorSet> = sets.iter().map(StorageSet::raw).collect();
-        // SAFETY: recording where the pipeline may be bound; all of one device.
+        // SAFETY: recording on the device of all of them.
         unsafe {
             let device = self.device;
-            device.cmd_bind_pipeline(self.cmd, point, pipeline);
             device.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
             device.cmd_push_constants(self.cmd, layout, STAGES, 0, bytes);
         }
@@ -164,6 +185,66 @@ impl Recorder<'_> {
         }
     }
 
+    /// The same with how many there are, `most` at most, in a word of another buffer. The device has `drawIndirectCount`.
+    pub fn draw_counted(
+        &self,
+        indexed: bool,
+        [arguments, counts]: [usize; 2],
+        [from, count_from]: [u64; 2],
+        most: u32,
+    ) {
+        let (device, cmd) = (self.device, self.cmd);
+        let (buffer, counts) = (self.raw.buffer(arguments), self.raw.buffer(counts));
+        // SAFETY: as above, of `most` commands.
+        unsafe {
+            if indexed {
+                let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
+                device.cmd_draw_indexed_indirect_count(
+                    cmd, buffer, from, counts, count_from, most, stride,
+                );
+            } else {
+                let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+                device.cmd_draw_indirect_count(cmd, buffer, from, counts, count_from, most, stride);
+            }
+        }
+    }
+
+    fn multi_draw(&self) -> ext::multi_draw::Device {
+        ext::multi_draw::Device::new(self.raw.device.instance().raw(), self.device)
+    }
+
+    /// Draws several ranges in a call. The device has `multiDraw`.
+    pub fn draw_multi(&self, ranges: &[vk::MultiDrawInfoEXT], instances: u32, first: u32) {
+        let draw = self.multi_draw().fp().cmd_draw_multi_ext;
+        let (count, stride) = (ranges.len() as u32, size_of_val(&ranges[..1]) as u32);
+        // SAFETY: a pipeline is bound; nothing is fetched but by the vertex's number; the device has the function.
+        unsafe { draw(self.cmd, count, ranges.as_ptr(), instances, first, stride) };
+    }
+
+    /// The same with the indices that are bound.
+    pub fn draw_multi_bound(
+        &self,
+        ranges: &[vk::MultiDrawIndexedInfoEXT],
+        instances: u32,
+        first: u32,
+    ) {
+        let draw = self.multi_draw().fp().cmd_draw_multi_indexed_ext;
+        let (count, stride) = (ranges.len() as u32, size_of_val(&ranges[..1]) as u32);
+        let own_offsets = std::ptr::null();
+        // SAFETY: as above, and the caller's buffer holds so many indices.
+        unsafe {
+            draw(
+                self.cmd,
+                count,
+                ranges.as_ptr(),
+                instances,
+                first,
+                stride,
+                own_offsets,
+            );
+        }
+    }
+
     /// Binds a compute pipeline with all buffers, and sets the push constants.
     pub fn bind_compute<T: bytemuck::NoUninit>(&self, pipeline: vk::Pipeline, constants: &T) {
         self.bind_to(vk::PipelineBindPoint::COMPUTE, pipeline, constants);
@@ -211,6 +292,25 @@ impl Recorder<'_> {
             self.device.cmd_set_event(self.cmd, event.raw, from.0);
             self.device
                 .cmd_wait_events(self.cmd, &[event.raw], from.0, to.0, &barrier, &[], &[]);
+        }
+    }
+
+    /// A memory barrier as Vulkan 1.3 has it, outside of a pass. The device has `synchronization2`.
+    pub fn memory_barrier2(&self, from: Scope, to: Scope) {
+        let barrier = [memory_barrier2(from, to)];
+        let info = vk::DependencyInfo::default().memory_barriers(&barrier);
+        // SAFETY: as above, and the caller's device has the feature.
+        unsafe { self.device.cmd_pipeline_barrier2(self.cmd, &info) };
+    }
+
+    /// An event as Vulkan 1.3 has it, likewise: what it orders is said when it is set, and when it is waited for.
+    pub fn event2(&self, event: &Event<'_>, from: Scope, to: Scope) {
+        let barrier = [memory_barrier2(from, to)];
+        let info = [vk::DependencyInfo::default().memory_barriers(&barrier)];
+        // SAFETY: as above; the event serves once.
+        unsafe {
+            self.device.cmd_set_event2(self.cmd, event.raw, &info[0]);
+            self.device.cmd_wait_events2(self.cmd, &[event.raw], &info);
         }
     }
 

@@ -30,6 +30,14 @@ pub struct ExtraFeatures {
     pub dynamic_patch_size: bool,
     /// Pipelines are linked from parts (`VK_EXT_graphics_pipeline_library`).
     pub pipeline_libraries: bool,
+    /// Shaders are bound one by one, without pipelines (`VK_EXT_shader_object`). It draws in dynamic rendering alone.
+    pub shader_objects: bool,
+    /// One call draws several ranges of vertices (`VK_EXT_multi_draw`).
+    pub multi_draw: bool,
+    /// Indirect draws whose number is in a buffer (`drawIndirectCount`).
+    pub draw_indirect_count: bool,
+    /// Barriers and events of Vulkan 1.3 (`synchronization2`).
+    pub synchronization2: bool,
 }
 
 impl ExtraFeatures {
@@ -45,6 +53,12 @@ impl ExtraFeatures {
         if self.pipeline_libraries {
             named.push(khr::pipeline_library::NAME);
             named.push(ext::graphics_pipeline_library::NAME);
+        }
+        if self.shader_objects {
+            named.push(ext::shader_object::NAME);
+        }
+        if self.multi_draw {
+            named.push(ext::multi_draw::NAME);
         }
         named
     }
@@ -66,34 +80,29 @@ impl ExtraFeatures {
             let found = unsafe { has_extension(instance, physical, name) };
             found.map_err(failed("vkEnumerateDeviceExtensionProperties"))
         };
-        let mut model = vk::PhysicalDeviceVulkanMemoryModelFeatures::default();
+        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default();
         let libraries =
             has(khr::pipeline_library::NAME)? && has(ext::graphics_pipeline_library::NAME)?;
         let mut chain = ExtraChain {
             feedback: has(ext::transform_feedback::NAME)?.then(Default::default),
             dynamic_state: has(ext::extended_dynamic_state2::NAME)?.then(Default::default),
             libraries: libraries.then(Default::default),
+            objects: has(ext::shader_object::NAME)?.then(Default::default),
+            multi_draw: has(ext::multi_draw::NAME)?.then(Default::default),
+            synchronization: (api_version >= vk::API_VERSION_1_3).then(Default::default),
         };
         let mut features = vk::PhysicalDeviceFeatures2::default();
         if api_version >= vk::API_VERSION_1_2 {
-            features = features.push_next(&mut model);
+            features = features.push_next(&mut vulkan12);
         }
-        if let Some(feedback) = &mut chain.feedback {
-            features = features.push_next(feedback);
-        }
-        if let Some(dynamic) = &mut chain.dynamic_state {
-            features = features.push_next(dynamic);
-        }
-        if let Some(libraries) = &mut chain.libraries {
-            features = features.push_next(libraries);
-        }
+        features = chain.query(features);
         // SAFETY: the caller's; each struct in the chain is one that the device knows and outlives the call.
         unsafe { instance.get_physical_device_features2(physical, &mut features) };
         let core = features.features;
         Ok(ExtraFeatures {
             robust_buffer_access: core.robust_buffer_access != 0,
-            vulkan_memory_model: model.vulkan_memory_model != 0
-                && model.vulkan_memory_model_device_scope != 0,
+            vulkan_memory_model: vulkan12.vulkan_memory_model != 0
+                && vulkan12.vulkan_memory_model_device_scope != 0,
             clip_and_cull_distances: core.shader_clip_distance != 0
                 && core.shader_cull_distance != 0,
             point_sizes: core.large_points != 0
@@ -108,6 +117,12 @@ impl ExtraFeatures {
             pipeline_libraries: chain
                 .libraries
                 .is_some_and(|own| own.graphics_pipeline_library != 0),
+            shader_objects: chain.objects.is_some_and(|own| own.shader_object != 0),
+            multi_draw: chain.multi_draw.is_some_and(|own| own.multi_draw != 0),
+            draw_indirect_count: vulkan12.draw_indirect_count != 0,
+            synchronization2: chain
+                .synchronization
+                .is_some_and(|own| own.synchronization2 != 0),
         })
     }
 
@@ -122,6 +137,7 @@ impl ExtraFeatures {
         set(&mut vulkan12.vulkan_memory_model, self.vulkan_memory_model);
         let scope = &mut vulkan12.vulkan_memory_model_device_scope;
         set(scope, self.vulkan_memory_model);
+        set(&mut vulkan12.draw_indirect_count, self.draw_indirect_count);
         set(&mut core.shader_clip_distance, self.clip_and_cull_distances);
         set(&mut core.shader_cull_distance, self.clip_and_cull_distances);
         set(&mut core.large_points, self.point_sizes);
@@ -137,6 +153,35 @@ pub(super) struct ExtraChain {
     feedback: Option<vk::PhysicalDeviceTransformFeedbackFeaturesEXT<'static>>,
     dynamic_state: Option<vk::PhysicalDeviceExtendedDynamicState2FeaturesEXT<'static>>,
     libraries: Option<vk::PhysicalDeviceGraphicsPipelineLibraryFeaturesEXT<'static>>,
+    objects: Option<vk::PhysicalDeviceShaderObjectFeaturesEXT<'static>>,
+    multi_draw: Option<vk::PhysicalDeviceMultiDrawFeaturesEXT<'static>>,
+    synchronization: Option<vk::PhysicalDeviceSynchronization2Features<'static>>,
+}
+
+/// Chains every struct that is there to an info.
+macro_rules! chain_all {
+    ($chain:expr, $info:expr) => {{
+        let (chain, mut info) = ($chain, $info);
+        if let Some(feedback) = &mut chain.feedback {
+            info = info.push_next(feedback);
+        }
+        if let Some(dynamic) = &mut chain.dynamic_state {
+            info = info.push_next(dynamic);
+        }
+        if let Some(libraries) = &mut chain.libraries {
+            info = info.push_next(libraries);
+        }
+        if let Some(objects) = &mut chain.objects {
+            info = info.push_next(objects);
+        }
+        if let Some(multi_draw) = &mut chain.multi_draw {
+            info = info.push_next(multi_draw);
+        }
+        if let Some(synchronization) = &mut chain.synchronization {
+            info = info.push_next(synchronization);
+        }
+        info
+    }};
 }
 
 impl ExtraChain {
@@ -147,26 +192,31 @@ impl ExtraChain {
             .extended_dynamic_state2_patch_control_points(true);
         let libraries = vk::PhysicalDeviceGraphicsPipelineLibraryFeaturesEXT::default()
             .graphics_pipeline_library(true);
+        let objects = vk::PhysicalDeviceShaderObjectFeaturesEXT::default().shader_object(true);
+        let multi_draw = vk::PhysicalDeviceMultiDrawFeaturesEXT::default().multi_draw(true);
+        let synchronization =
+            vk::PhysicalDeviceSynchronization2Features::default().synchronization2(true);
         ExtraChain {
             feedback: extra.transform_feedback.then_some(feedback),
             dynamic_state: extra.dynamic_patch_size.then_some(dynamic),
             libraries: extra.pipeline_libraries.then_some(libraries),
+            objects: extra.shader_objects.then_some(objects),
+            multi_draw: extra.multi_draw.then_some(multi_draw),
+            synchronization: extra.synchronization2.then_some(synchronization),
         }
+    }
+
+    fn query<'a>(
+        &'a mut self,
+        features: vk::PhysicalDeviceFeatures2<'a>,
+    ) -> vk::PhysicalDeviceFeatures2<'a> {
+        chain_all!(self, features)
     }
 
     pub(super) fn chain<'a>(
         &'a mut self,
-        mut info: vk::DeviceCreateInfo<'a>,
+        info: vk::DeviceCreateInfo<'a>,
     ) -> vk::DeviceCreateInfo<'a> {
-        if let Some(feedback) = &mut self.feedback {
-            info = info.push_next(feedback);
-        }
-        if let Some(dynamic) = &mut self.dynamic_state {
-            info = info.push_next(dynamic);
-        }
-        if let Some(libraries) = &mut self.libraries {
-            info = info.push_next(libraries);
-        }
-        info
+        chain_all!(self, info)
     }
 }

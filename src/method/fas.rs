@@ -121,7 +121,7 @@ fn point(patch: &abi::Patch, uv: Vec2, surface: impl Fn(Vec2) -> Surface) -> Sur
         [0.0, 1.0] => 3,
         _ => return own,
     };
-    if patch.flags & abi::PATCH_NEARBY_CORNER << corner == 0 {
+    if patch.flags & (abi::PATCH_NEARBY_CORNER << corner) == 0 {
         return own;
     }
     let away = (1u32 << (patch.plan >> abi::PIECE_DEPTH_SHIFT)) as f32 / 64.0;

@@ -167,7 +167,7 @@ impl<'a> Levels<'a> {
             (edge + 1) << abi::PIECE_CREASE_SHIFT
         });
         let record = record(self.model, level, cell, plan);
-        let pass = match record.flags & abi::PATCH_NEARBY_CORNER * 15 {
+        let pass = match record.flags & (abi::PATCH_NEARBY_CORNER * 15) {
             0 => &mut self.splines,
             _ => &mut self.cornered,
         };

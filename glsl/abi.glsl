@@ -168,6 +168,8 @@ const uint PATCH_CHILD_SHIFT = 11u;
 const uint CHILD_OF_QUAD = 1u;
 // The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
 const uint CHILD_OF_TRIANGLE = 5u;
+// Patch flag of a piece, shifted by the corner's number: its normal there counts only if that nearby is like it.
+const uint PATCH_NEARBY_CORNER = 128u;
 // A piece of a quad, which its `plan` tells: its column and, 12 bits higher, its row among as many as there are at its depth.
 const uint CHILD_PIECE = 9u;
 // In a piece's `plan`: its edge with a crease plus 1, or 0; three bits.

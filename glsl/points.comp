@@ -27,14 +27,19 @@ void blend(PointRow row, uint number) {
     points[number].position = position;
 }
 
-// The same of points of earlier steps.
+// The same of points of earlier steps; of many terms, by what rounding takes away from each step (Kahan 1965).
 void refine(PointRow row, uint number) {
-    precise vec3 position = vec3(0.0);
+    vec3 sum = vec3(0.0);
+    vec3 lost = vec3(0.0);
     for (uint i = 0u; i < row.count; ++i) {
         PointTerm term = terms[row.first + i];
-        position = position + term.position * points[term.source].position;
+        precise vec3 rest = term.position * points[term.source].position - lost;
+        precise vec3 next = sum + rest;
+        precise vec3 more = (next - sum) - rest;
+        if (row.count > CONTROL_INVOCATIONS) lost = more;
+        sum = next;
     }
-    points[number].position = position;
+    points[number].position = sum;
 }
 
 // The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where

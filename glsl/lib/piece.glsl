@@ -8,6 +8,7 @@
 #include "lib/control_points.glsl"
 #include "lib/levels.glsl"
 #include "lib/points.glsl"
+#include "lib/surface.glsl"
 
 const uint CONTROL_POINTS = 1u;
 #define CONTROL_VERTICES 16
@@ -30,6 +31,23 @@ bool has_one_normal(Patch record, vec2 uv) {
     uint edge = on.x ? 0u : on.y ? 1u : on.z ? 2u : 3u;
     return (record.flags & (PATCH_CREASED << (corner < 8u ? corner : edge))) == 0u;
 }
+#endif
+
+#ifdef STAGE_EVALUATION
+// Whether a corner's normal counts only if that nearby is like it.
+bool is_unsure(Patch record, vec2 uv) {
+    uint corner = uv.y == 0.0 ? (uv.x == 0.0 ? 0u : uv.x == 1.0 ? 1u : 4u) : uv.y == 1.0 ? (uv.x == 1.0 ? 2u : uv.x == 0.0 ? 3u : 4u) : 4u;
+    return corner < 4u && (record.flags & (PATCH_NEARBY_CORNER << corner)) != 0u;
+}
+
+// At (1/64, 1/64) of the ptex face from a corner.
+vec2 nearby(Patch record, vec2 uv) {
+    float away = power_of_two(int(record.plan >> PIECE_DEPTH_SHIFT) - 6);
+    precise vec2 inside = uv + away * (1.0 - 2.0 * uv);
+    return inside;
+}
+
+vec3 sure_normal(vec3 own, vec3 beside) { return beside == vec3(0.0) || are_near(own, beside) ? own : beside; }
 #endif
 
 #ifdef STAGE_FRAGMENT

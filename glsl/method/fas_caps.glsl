@@ -11,16 +11,10 @@ const uint INNER = 12u;
 #include "lib/bicubic.glsl"
 
 #ifdef STAGE_EVALUATION
-// Where both tangents of a corner lie along a bend of the boundary, the normal is that a little inside.
-const float INSIDE = 1.0 / 16.0;
-
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Inner inner = Inner(in_point[INNER], in_point[INNER + 1u], in_point[INNER + 2u], in_point[INNER + 3u]);
     Point own = surface_point(bicubic(inner, uv));
-    if (own.normal == vec3(0.0)) {
-        precise vec2 inside = uv + INSIDE * (vec2(0.5) - uv);
-        own.normal = surface_normal(bicubic(inner, inside));
-    }
+    if (is_unsure(record, uv)) own.normal = sure_normal(own.normal, surface_normal(bicubic(inner, nearby(record, uv))));
     return own;
 }
 #endif

@@ -171,6 +171,8 @@ constants! {
     CHILD_OF_QUAD = 1;
     /// The child of a triangle at corner 0; those at the other corners follow, then the one in the middle.
     CHILD_OF_TRIANGLE = 5;
+    /// Patch flag of a piece, shifted by the corner's number: its normal there counts only if that nearby is like it.
+    PATCH_NEARBY_CORNER = 128;
     /// A piece of a quad, which its `plan` tells: its column and, 12 bits higher, its row among as many as there are at its depth.
     CHILD_PIECE = 9;
     /// In a piece's `plan`: its edge with a crease plus 1, or 0; three bits.

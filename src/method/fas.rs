@@ -8,6 +8,7 @@
 //! end cap (`fas/caps.rs`); the paper stops where the tess level is 1, and only corners, which are on the limit, are drawn of it.
 
 mod caps;
+mod level;
 mod levels;
 
 use glam::{Vec2, Vec3};
@@ -17,7 +18,7 @@ use crate::error::{Error, Place, Result};
 use crate::mesh::{Model, Scheme};
 use crate::method::bicubic::Bicubic;
 use crate::method::spline::{bspline, creased};
-use crate::method::surface::{Controls, SurfacePoint};
+use crate::method::surface::{Controls, Surface, SurfacePoint, Tangents};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::plan::Database;
 use crate::tessellation::Domain;
@@ -77,12 +78,13 @@ fn check(model: &Model) -> Result<()> {
 
 fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let level = options.isolation.check()?.level;
-    let splines = Pass::new("fas", Domain::Quads, 1, spline);
+    let [splines, cornered] =
+        ["fas", "fas_corners"].map(|shader| Pass::new(shader, Domain::Quads, 1, spline));
     let caps = Pass {
         caps: true,
         ..Pass::new("fas_caps", Domain::Quads, 1, cap)
     };
-    Ok(Levels::new(model, [splines, caps]).refine(level))
+    Ok(Levels::new(model, [splines, cornered, caps]).refine(level))
 }
 
 /// The points of a patch.
@@ -102,33 +104,48 @@ fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint
             (edge - 1, f32::from_bits(bits))
         }
     };
-    let (u, v) = creased(uv, edge, sharpness);
-    bspline(u, v, 1.0, |x, y| points[x + 4 * y]).point()
+    point(&pass.patches[patch], uv, |uv| {
+        let (u, v) = creased(uv, edge, sharpness);
+        bspline(u, v, 1.0, |x, y| points[x + 4 * y])
+    })
 }
 
-/// Where both tangents of a corner lie along a bend of the boundary, the normal is that a little inside.
-const INSIDE: f32 = 1.0 / 16.0;
+/// A point of a surface. At the corner of a single face, and at a cusp, the normal counts only if that at (1/64, 1/64) of the ptex face from there is like
+/// it, as the truth has it (`subdivision/normals.rs`).
+fn point(patch: &abi::Patch, uv: Vec2, surface: impl Fn(Vec2) -> Surface) -> SurfacePoint {
+    let own = surface(uv).point();
+    let corner = match uv.to_array() {
+        [0.0, 0.0] => 0,
+        [1.0, 0.0] => 1,
+        [1.0, 1.0] => 2,
+        [0.0, 1.0] => 3,
+        _ => return own,
+    };
+    if patch.flags & (abi::PATCH_NEARBY_CORNER << corner) == 0 {
+        return own;
+    }
+    let away = (1u32 << (patch.plan >> abi::PIECE_DEPTH_SHIFT)) as f32 / 64.0;
+    let nearby = surface(uv + away * (1.0 - 2.0 * uv)).normal();
+    if nearby == Vec3::ZERO || Tangents::are_near(own.normal, nearby) {
+        return own;
+    }
+    SurfacePoint {
+        normal: nearby,
+        ..own
+    }
+}
 
 /// An end cap: corners, the points next to each on its edge, those next to the other end, and those inside.
 fn cap(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let points = points(pass, given, patch);
     let four = |first: usize| std::array::from_fn(|i| points[first + i]);
-    let patch = Bicubic {
+    let bicubic = Bicubic {
         corners: four(0),
         near: four(4),
         far: four(8),
         inner: four(12),
     };
-    let surface = patch.surface(uv);
-    let own = surface.point();
-    if own.normal != Vec3::ZERO {
-        return own;
-    }
-    let inside = uv + INSIDE * (Vec2::splat(0.5) - uv);
-    SurfacePoint {
-        normal: patch.surface(inside).normal(),
-        ..own
-    }
+    point(&pass.patches[patch], uv, |uv| bicubic.surface(uv))
 }
 
 #[cfg(test)]

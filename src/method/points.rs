@@ -135,9 +135,19 @@ impl Points {
             })
         };
         let of_points = || {
-            terms.iter().fold(Vec3::ZERO, |sum, term| {
-                sum + term.position * Vec3::from(points[term.source as usize].position)
-            })
+            let position = |term: &PointTerm| Vec3::from(points[term.source as usize].position);
+            let weighted = terms.iter().map(|term| term.position * position(term));
+            let (mut sum, mut lost) = (Vec3::ZERO, Vec3::ZERO);
+            for term in weighted {
+                let rest = term - lost;
+                let next = sum + rest;
+                // Of many terms, by what rounding takes away from each step (Kahan 1965).
+                if count > abi::CONTROL_INVOCATIONS as usize {
+                    lost = (next - sum) - rest;
+                }
+                sum = next;
+            }
+            sum
         };
         let normal = match kind {
             abi::POINTS_BLEND => {

@@ -134,10 +134,8 @@ fn the_front_is_where_faces_are_counter_clockwise() {
                 .map(|cull| {
                     let mut loaded = load(&gpu, &model, prepared.clone(), backend, cut);
                     loaded.cull = cull;
-                    loaded
-                        .capture(cut, Fill::Solid(Shading::Patch))
-                        .expect("it is drawn");
-                    loaded.pixels()
+                    let picture = loaded.picture(cut, Fill::Solid(Shading::Patch));
+                    picture.expect("it is drawn").to_vec()
                 });
                 let differing = |a: &[u8], b: &[u8]| {
                     let pairs = a.chunks(4).zip(b.chunks(4));

@@ -15,7 +15,7 @@ pub(super) const RULE: Rule = Rule {
     name: "differences",
     rule: "normals are at right angles to central differences of the positions beside them, within half the greatest second difference there",
     source: "Taylor's theorem",
-    concerns: has_own_normals,
+    concerns: has_rows,
     options: own_normals,
     look,
 };
@@ -29,6 +29,11 @@ pub(super) fn has_own_normals(method: &Method, _: Scheme) -> bool {
             | Reproduces::LimitBesideCaps(_)
             | Reproduces::Faces(_)
     )
+}
+
+/// The same, where a face is one patch with as many rows as are asked for. Of pieces the smallest have two, which tell no second difference.
+fn has_rows(method: &Method, scheme: Scheme) -> bool {
+    has_own_normals(method, scheme) && !method.isolates
 }
 
 /// Options that make them so.

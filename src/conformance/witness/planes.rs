@@ -23,7 +23,9 @@ const MESHES: u32 = 5;
 const ASKED: u32 = 2;
 
 pub(super) fn cases() -> Vec<Case> {
-    let numbered = pairs().flat_map(|pair| (0..CASES).map(move |number| (pair, number)));
+    // A piece of two triangles does not tell whether it turns over between them, and where it does there is no side for normals to be on.
+    let whole = pairs().filter(|(method, _)| !method.isolates);
+    let numbered = whole.flat_map(|pair| (0..CASES).map(move |number| (pair, number)));
     let case = |((method, scheme), number): ((&'static Method, Scheme), u32)| {
         let name = format!("witness.plane.{}-{scheme}-{number}", method.name);
         Case::new(name.clone(), RULE, SOURCE, move |context| {

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use crate::mesh::Scheme;
 use crate::mesh::sharpness::is_semi_sharp;
 use crate::mesh::topology::Topology;
-use crate::method::fas::levels::Level;
+use crate::method::fas::level::Level;
 use crate::method::points::Points;
 use crate::method::spokes::ring::Ring;
 use crate::method::spokes::sum;
@@ -86,6 +86,12 @@ impl Caps {
             limit: ring.limit.clone(),
         }
     }
+}
+
+/// Whether a cap has the limit's tangent plane at a corner.
+pub fn has_plane(topology: &Topology, face: u32, corner: u32) -> bool {
+    corner_points(topology, face, corner).is_some_and(|around| around.crease.is_none())
+        || has_ring(topology, face, corner)
 }
 
 /// Whether all faces around a vertex, or in a sector between infinite creases, share a plane with tangents of known lengths.

@@ -8,7 +8,8 @@ use crate::abi;
 use crate::mesh::Model;
 use crate::mesh::sharpness::is_infinite;
 use crate::mesh::topology::Topology;
-use crate::method::fas::caps::Caps;
+use crate::method::fas::caps::{Caps, has_plane};
+use crate::method::fas::level::Level;
 use crate::method::patches::{self, Part};
 use crate::method::points::{Points, Row};
 use crate::method::ptex::Piece;
@@ -26,28 +27,19 @@ struct Cell {
 /// A child to be: a corner of a face, and the cell but for its face.
 type Child = ((u32, u32), Cell);
 
-/// A level: its faces with all that touches them.
-pub struct Level<'a> {
-    pub topology: Cow<'a, Topology>,
-    /// The point of vertex 0; those of the others follow.
-    first_point: u32,
-    /// How many levels there are to come.
-    left: u32,
-    /// The faces that are no B-splines: they are refined, or at the last level have end caps.
-    is_irregular: Vec<bool>,
-}
-
 /// What is made level by level.
 pub struct Levels<'a> {
     model: &'a Model,
     points: Points,
     splines: Pass,
+    /// Splines with corners whose normals are compared with those nearby.
+    cornered: Pass,
     caps: Pass,
 }
 
 impl<'a> Levels<'a> {
-    /// Nothing yet, for a pass of B-splines and one of end caps.
-    pub fn new(model: &'a Model, [splines, caps]: [Pass; 2]) -> Levels<'a> {
+    /// Nothing yet, for passes of B-splines, of such with corners of their own, and of end caps.
+    pub fn new(model: &'a Model, [splines, cornered, caps]: [Pass; 3]) -> Levels<'a> {
         let mut points = Points::default();
         points.begin(abi::POINTS_BLEND, 0);
         for vertex in 0..model.topology().vertex_count() as u32 {
@@ -57,6 +49,7 @@ impl<'a> Levels<'a> {
             model,
             points,
             splines,
+            cornered,
             caps,
         }
     }
@@ -92,7 +85,7 @@ impl<'a> Levels<'a> {
         }
         Prepared {
             points: self.points,
-            ..Prepared::of([self.splines, self.caps])
+            ..Prepared::of([self.splines, self.cornered, self.caps])
         }
     }
 
@@ -142,7 +135,8 @@ impl<'a> Levels<'a> {
                 Some(spline) => self.add_spline(level, cell, spline, &mut mirrored),
                 None if level.left == 0 => {
                     let controls = caps.points(level, cell.face, &mut self.points);
-                    add(&mut self.caps, self.model, level, cell, &controls, 0);
+                    let record = record(self.model, level, cell, 0);
+                    add(&mut self.caps, self.model, cell, &controls, record);
                 }
                 None => children.extend((0..4).map(|corner| {
                     let piece = cell.piece.child(corner);
@@ -172,101 +166,85 @@ impl<'a> Levels<'a> {
             controls.push(sharpness.to_bits());
             (edge + 1) << abi::PIECE_CREASE_SHIFT
         });
-        add(&mut self.splines, self.model, level, cell, &controls, plan);
+        let record = record(self.model, level, cell, plan);
+        let pass = match record.flags & (abi::PATCH_NEARBY_CORNER * 15) {
+            0 => &mut self.splines,
+            _ => &mut self.cornered,
+        };
+        add(pass, self.model, cell, &controls, record);
     }
 }
 
-impl Level<'_> {
-    /// Adds a point, a sum over the vertices of this level; tells its number.
-    pub fn push(&self, points: &mut Points, mask: &Mask) -> u32 {
-        let mut terms: Vec<(u32, f64)> = mask
-            .iter()
-            .map(|&(vertex, weight)| (self.first_point + vertex, weight))
-            .collect();
-        // A vertex may occur more than once.
-        terms.sort_by_key(|&(point, _)| point);
-        terms.dedup_by(|next, sum| {
-            let alike = next.0 == sum.0;
-            if alike {
-                sum.1 += next.1;
-            }
-            alike
-        });
-        terms.retain(|&(_, weight)| weight != 0.0);
-        let number = points.count;
-        points.push(Row::Blend(&terms.into_iter().collect()));
-        number
-    }
-
-    /// The flags of a face: beyond which edges lie two patches of the next level; and where it has not the same normals as the faces beside it, at infinitely
-    /// sharp features, at semi-sharp ones that no level is left to smooth, and on edges of end caps.
-    fn flags(&self, face: u32) -> u32 {
-        let topology = &self.topology;
-        let irregular = |&face: &u32| self.is_irregular[face as usize];
-        let mut flags = 0;
-        for (side, &edge) in topology.face_edges(face).iter().enumerate() {
-            let faces = topology.edge_faces(edge);
-            let own = self.is_irregular[face as usize];
-            if self.left > 0 && !own && faces.iter().any(irregular) {
-                flags |= abi::PATCH_EVEN_EDGE << side;
-            }
-            let capped = self.left == 0 && faces.iter().any(irregular);
-            let creased = faces.len() > 1 && is_infinite(topology.edge(edge).sharpness);
-            if capped || creased {
-                flags |= abi::PATCH_CREASED << side;
-            }
+/// The flags of a face: beyond which edges lie two patches of the next level; and where it has not the same normals as the faces beside it, at infinitely
+/// sharp features, at semi-sharp ones that no level is left to smooth, and on edges of end caps.
+fn flags(level: &Level<'_>, face: u32) -> u32 {
+    let topology = &level.topology;
+    let irregular = |&face: &u32| level.is_irregular[face as usize];
+    let mut flags = 0;
+    for (side, &edge) in topology.face_edges(face).iter().enumerate() {
+        let faces = topology.edge_faces(edge);
+        let own = level.is_irregular[face as usize];
+        if level.left > 0 && !own && faces.iter().any(irregular) {
+            flags |= abi::PATCH_EVEN_EDGE << side;
         }
-        for (corner, &vertex) in topology.face(face).iter().enumerate() {
-            if !self.is_smooth(vertex) {
-                flags |= abi::PATCH_CREASED << (4 + corner);
-            }
+        let capped = level.left == 0 && faces.iter().any(irregular);
+        let creased = faces.len() > 1 && is_infinite(topology.edge(edge).sharpness);
+        if capped || creased {
+            flags |= abi::PATCH_CREASED << side;
         }
-        flags
     }
-
-    /// Whether nothing at a vertex inside is sharp any more at the last level.
-    fn is_smooth(&self, vertex: u32) -> bool {
-        let topology = &self.topology;
-        let stays = |sharpness: f32| is_infinite(sharpness) || sharpness > self.left as f32;
-        let mut sharp = topology.sharp_edges(vertex);
-        let inside = |edge: u32| topology.edge_faces(edge).len() > 1;
-        let alone = topology.vertex_faces(vertex).len() == 1;
-        !sharp.any(|edge| inside(edge) && stays(topology.edge(edge).sharpness))
-            && (alone || !stays(topology.vertex_sharpness(vertex)))
+    for (corner, &vertex) in (0..).zip(topology.face(face)) {
+        if !level.is_smooth(vertex) {
+            flags |= abi::PATCH_CREASED << (4 + corner);
+        }
+        let capped = level.left == 0 && level.is_irregular[face as usize];
+        if is_alone(topology, face, corner) || capped && !has_plane(topology, face, corner) {
+            flags |= abi::PATCH_NEARBY_CORNER << corner;
+        }
     }
+    flags
 }
 
-/// Adds the patch of a face.
-fn add(
-    pass: &mut Pass,
-    model: &Model,
-    level: &Level<'_>,
-    cell: &Cell,
-    controls: &[u32],
-    plan: u32,
-) {
+/// Whether a face has a vertex, or a sector of it between sharp edges, to itself.
+fn is_alone(topology: &Topology, face: u32, corner: u32) -> bool {
+    let vertex = topology.face(face)[corner as usize];
+    topology.vertex_faces(vertex).len() == 1
+        || topology.sharp_edges(vertex).next().is_some()
+            && topology.fan(face, corner).faces.len() == 1
+}
+
+/// Adds a patch.
+fn add(pass: &mut Pass, model: &Model, cell: &Cell, controls: &[u32], record: abi::Patch) {
+    pass.patches.push(abi::Patch {
+        controls: pass.controls.len() as u32,
+        ..record
+    });
+    pass.controls.extend_from_slice(controls);
+    pass.texture.push(texture(model, cell));
+}
+
+/// The patch of a face but for its control points.
+fn record(model: &Model, level: &Level<'_>, cell: &Cell, plan: u32) -> abi::Patch {
     let topology = &level.topology;
     let valence = |&vertex: &u32| topology.vertex_edges(vertex).len().min(255) as u8;
     let mut valences = [0; 4];
     for (valence_of, vertex) in valences.iter_mut().zip(topology.face(cell.face)) {
         *valence_of = valence(vertex);
     }
-    let mut flags = level.flags(cell.face);
+    let mut flags = flags(level, cell.face);
     if model.topology().face(cell.part.face).len() != 4 {
         flags |= abi::PATCH_HALF;
     }
     if cell.piece.depth > 0 {
         flags |= abi::CHILD_PIECE << abi::PATCH_CHILD_SHIFT;
     }
-    pass.patches.push(abi::Patch {
+    abi::Patch {
         ptex: cell.part.ptex,
         flags,
-        controls: pass.controls.len() as u32,
+        controls: 0,
         plan: cell.piece.plan() | plan,
         valences: u32::from_le_bytes(valences),
-    });
-    pass.controls.extend_from_slice(controls);
-    pass.texture.push(texture(model, cell));
+    }
 }
 
 /// Texture coordinates at the corners of a piece: linear between those of its part.

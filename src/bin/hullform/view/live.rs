@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::view::draft::{Change, History};
     use hullform::mesh::builtin;
-    use hullform::method::{MethodOptions, method};
+    use hullform::method::{METHODS, MethodOptions};
 
     #[test]
     fn what_follows_a_draft_there_and_back_is_what_the_draft_is() {
@@ -89,8 +89,9 @@ mod tests {
         let start = history.draft().clone();
         let model = Model::new(start.mesh().expect("a mesh"));
         let database = Database::default();
-        let quadtree = method("quadtree").expect("a method");
-        let editable = quadtree.prepare_editable(&model, MethodOptions::default(), &database);
+        let able = METHODS.iter().find(|method| method.edits_in_place());
+        let able = able.expect("there is a method that edits");
+        let editable = able.prepare_editable(&model, MethodOptions::default(), &database);
         let editable = editable.expect("it is prepared");
         let mut live = Live::new(&model, vec![editable], start.clone()).expect("the same faces");
         let (&edge, &was) = start.creases.iter().next().expect("a crease");

@@ -305,22 +305,23 @@ impl Viewer {
 
     /// How each side is prepared.
     pub fn recipes(&self) -> Vec<Recipe> {
-        // What is being edited is edited in place, where the method can; nobody knows yet which one draws a model by itself.
-        let edits = self.selection.tool != Tool::Look;
+        let mut methods = vec![self.cutting.method];
+        if self.compare.beside != Beside::Alone {
+            methods.push(self.compare.other);
+        }
+        // What is being edited is edited in place, where all methods can; nobody knows yet which one draws a model by itself.
         let in_place = |name: &str| METHODS.iter().any(|m| m.name == name && m.edits_in_place());
-        let recipe = |method: Option<&'static str>| Recipe {
-            live: edits && method.is_none_or(in_place),
+        let edits = self.selection.tool != Tool::Look;
+        let live = edits && methods.iter().all(|method| method.is_none_or(in_place));
+        let recipe = |method| Recipe {
+            live,
             method,
             backend: self.cutting.backend,
             residence: self.cutting.residence,
             amplify: self.cutting.amplify,
             decides: self.cutting.decides(),
         };
-        let mut all = vec![recipe(self.cutting.method)];
-        if self.compare.beside != Beside::Alone {
-            all.push(recipe(self.compare.other));
-        }
-        all
+        methods.into_iter().map(recipe).collect()
     }
 
     /// Places of all control vertices, as they are shown.

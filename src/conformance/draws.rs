@@ -3,16 +3,20 @@
 //! Control points that make no whole patch are dropped, draws of nothing draw nothing, and where a draw begins, how many commands one call has and how many patches a
 //! command, is no matter. The shaders are those of `scale`. A seeded fault expects the patch behind the last one of each draw as well.
 
+mod kind;
+mod recording;
+
 use std::time::Duration;
 
 use ash::vk;
 
 use crate::conformance::loads::{Constants, Note};
 use crate::conformance::modes::module;
-use crate::conformance::raw::{Program, Raster, Raw, Recorder};
+use crate::conformance::raw::{Program, Raster, Raw};
 use crate::conformance::{Case, Check, Context, Finding, Group};
 use crate::error::Result;
 use crate::host::Device;
+use kind::Kind;
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -21,66 +25,6 @@ pub const GROUP: Group = Group {
     cases,
     model_cases: None,
 };
-
-/// The kinds of draw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Draw,
-    Indexed,
-    Indirect,
-    IndexedIndirect,
-    /// Of several ranges in a call (`VK_EXT_multi_draw`).
-    Multi,
-    MultiIndexed,
-    /// Indirect, with their number in a buffer.
-    Counted,
-    CountedIndexed,
-}
-
-impl Kind {
-    const ALL: [Kind; 8] = [
-        Kind::Draw,
-        Kind::Indexed,
-        Kind::Indirect,
-        Kind::IndexedIndirect,
-        Kind::Multi,
-        Kind::MultiIndexed,
-        Kind::Counted,
-        Kind::CountedIndexed,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Draw => "draw",
-            Kind::Indexed => "indexed",
-            Kind::Indirect => "indirect",
-            Kind::IndexedIndirect => "indexed_indirect",
-            Kind::Multi => "multi",
-            Kind::MultiIndexed => "multi_indexed",
-            Kind::Counted => "counted",
-            Kind::CountedIndexed => "counted_indexed",
-        }
-    }
-
-    fn has_indices(self) -> bool {
-        matches!(
-            self,
-            Kind::Indexed | Kind::IndexedIndirect | Kind::MultiIndexed | Kind::CountedIndexed
-        )
-    }
-
-    fn is_indirect(self) -> bool {
-        matches!(self, Kind::Indirect | Kind::IndexedIndirect) || self.is_counted()
-    }
-
-    fn is_multi(self) -> bool {
-        matches!(self, Kind::Multi | Kind::MultiIndexed)
-    }
-
-    fn is_counted(self) -> bool {
-        matches!(self, Kind::Counted | Kind::CountedIndexed)
-    }
-}
 
 /// A command: of vertices and instances the first and how many, behind the plan's own first.
 #[derive(Clone, Copy, Debug)]
@@ -321,11 +265,7 @@ fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
             };
             cmd.bind_indices(INDICES, kind);
         }
-        match plan.kind {
-            _ if plan.kind.is_indirect() => record_indirect(cmd, plan),
-            _ if plan.kind.is_multi() => record_multi(cmd, plan),
-            _ => record(cmd, plan),
-        }
+        recording::record(cmd, plan);
         cmd.barrier();
         constants.first_vertex = 0;
         constants.first_instance = 0;
@@ -359,74 +299,6 @@ fn arrives(context: &Context, plan: &Plan) -> Result<Finding> {
         "{count} patches in {} commands",
         plan.commands.len()
     )))
-}
-
-/// A call a command.
-fn record(cmd: &Recorder<'_>, plan: &Plan) {
-    for command in &plan.commands {
-        cmd.barrier();
-        if plan.kind.has_indices() {
-            cmd.draw_bound(plan.indexed_arguments(command));
-            continue;
-        }
-        let a = plan.arguments(command);
-        let (vertices, instances) = (a.vertex_count, a.instance_count);
-        cmd.draw(vertices, instances, a.first_vertex, a.first_instance);
-    }
-}
-
-/// With arguments, and their number, in buffers.
-fn record_indirect(cmd: &Recorder<'_>, plan: &Plan) {
-    let indexed = plan.kind.has_indices();
-    let stride = if indexed { 20 } else { 16 };
-    let count = plan.commands.len() as u32;
-    let calls = if plan.together { 1 } else { u64::from(count) };
-    for i in 0..calls {
-        cmd.barrier();
-        let (from, own) = if plan.together {
-            (0, count)
-        } else {
-            (stride * i, 1)
-        };
-        if plan.kind.is_counted() {
-            // There could be one more than there are.
-            let number = if plan.together { 0 } else { 4 };
-            cmd.draw_counted(indexed, [ARGUMENTS, COUNTS], [from, number], own + 1);
-        } else {
-            cmd.draw_several(indexed, ARGUMENTS, from, own);
-        }
-    }
-}
-
-/// With ranges in a call: all of those whose instances are the same.
-fn record_multi(cmd: &Recorder<'_>, plan: &Plan) {
-    let alike = |a: &Command, b: &Command| plan.together && a.instances == b.instances;
-    for commands in plan.commands.chunk_by(alike) {
-        cmd.barrier();
-        let instances = plan.arguments(&commands[0]);
-        if plan.kind.has_indices() {
-            let ranges: Vec<_> = commands
-                .iter()
-                .map(|command| plan.indexed_arguments(command))
-                .map(|a| vk::MultiDrawIndexedInfoEXT {
-                    first_index: a.first_index,
-                    index_count: a.index_count,
-                    vertex_offset: a.vertex_offset,
-                })
-                .collect();
-            cmd.draw_multi_bound(&ranges, instances.instance_count, instances.first_instance);
-        } else {
-            let ranges: Vec<_> = commands
-                .iter()
-                .map(|command| plan.arguments(command))
-                .map(|a| vk::MultiDrawInfoEXT {
-                    first_vertex: a.first_vertex,
-                    vertex_count: a.vertex_count,
-                })
-                .collect();
-            cmd.draw_multi(&ranges, instances.instance_count, instances.first_instance);
-        }
-    }
 }
 
 const SOURCE: &str =

@@ -226,7 +226,7 @@ const WAYS: [Way; 8] = [
 /// What a draw binds.
 enum Made {
     Pipeline(vk::Pipeline),
-    Objects(Objects),
+    Objects(Box<Objects>),
 }
 
 impl Way {
@@ -236,10 +236,11 @@ impl Way {
         let linked = match self.bound {
             Bound::Objects => false,
             Bound::LinkedObjects => true,
-            Bound::Both if turn % 2 == 0 => false,
+            Bound::Both if turn.is_multiple_of(2) => false,
             Bound::Pipelines | Bound::Both => return raw.pipeline(&program).map(Made::Pipeline),
         };
-        raw.objects(&program, linked).map(Made::Objects)
+        let objects = raw.objects(&program, linked)?;
+        Ok(Made::Objects(Box::new(objects)))
     }
 
     /// Draws that are alone, or in a pass, wait for each other by a barrier in it.

@@ -132,11 +132,14 @@ const VIEWS: [(&str, u32); 4] = [
     ("third", 0b100),
 ];
 
+/// A way to draw so many views.
+type Way = (&'static str, fn(u32) -> Drawing);
+
+const WAYS: [Way; 2] = [("pass", Drawing::Pass), ("rendering", Drawing::Rendering)];
+
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    let ways: [(&str, fn(u32) -> Drawing); 2] =
-        [("pass", Drawing::Pass), ("rendering", Drawing::Rendering)];
-    for ((way, drawing), (name, views)) in ways
+    for ((way, drawing), (name, views)) in WAYS
         .into_iter()
         .flat_map(|way| VIEWS.map(|views| (way, views)))
     {

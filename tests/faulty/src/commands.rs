@@ -166,6 +166,8 @@ unsafe extern "system" fn begin_command_buffer(
     }
 }
 
+// As many arguments as Vulkan's.
+#[allow(clippy::too_many_arguments)]
 unsafe extern "system" fn get_query_pool_results(
     device: vk::Device,
     pool: vk::QueryPool,

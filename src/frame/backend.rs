@@ -50,10 +50,13 @@ struct Row {
     /// How many triangles.
     triangles: fn(&Levels, Spacing) -> u32,
     /// Its triangles by the numbers of its vertices, which come in any order; None where these are not all.
-    join: fn(&Levels, Spacing, &[[f32; 2]]) -> Option<Vec<[u32; 3]>>,
+    join: fn(&Levels, Spacing, &[[f32; 2]]) -> Option<Triangles>,
     /// Its vertices and triangles.
     mould: fn(&Levels, Spacing) -> Mould,
 }
+
+/// Three vertices each, by their numbers.
+type Triangles = Vec<[u32; 3]>;
 
 /// By the numbers of [`Backend`].
 static ROWS: [Row; 3] = [
@@ -119,7 +122,7 @@ pub(super) struct Mould {
     pub triangles: Vec<[u32; 3]>,
 }
 
-fn join_lattice(levels: &Levels, _: Spacing, uv: &[[f32; 2]]) -> Option<Vec<[u32; 3]>> {
+fn join_lattice(levels: &Levels, _: Spacing, uv: &[[f32; 2]]) -> Option<Triangles> {
     let segments = lattice_segments(levels) as f32;
     let place = |at: &[f32; 2]| at.map(|x| (x * segments) as u32);
     let numbers: FxHashMap<[u32; 2], u32> = uv.iter().map(place).zip(0..).collect();

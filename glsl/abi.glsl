@@ -220,6 +220,8 @@ const uint DECIDE_INVOCATIONS = 64u;
 const uint PATTERN_SHIFT = 7u;
 // Rows of a patch's lattice that the geometry shader can make: one an invocation.
 const uint GEOMETRY_ROWS = 32u;
+// The same where it hands on tangents.
+const uint TANGENT_ROWS = 16u;
 // Counter: patches that found no room in the ring and were not drawn.
 const uint COUNTER_OVERFLOWS = 0u;
 // Counter: points computed, over all batches.

@@ -2,7 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 
 // A row of a patch's triangles an invocation (Boubekeur, Schlick 2007, section 3.2): the same triangles as its refinement pattern has. What
-// every device can put out, 1024 components, is 68 vertices of ours; the longest row has 66.
+// every device can put out, 1024 components, is 68 vertices of ours; the longest row has 66. With tangents it is 48, and there are half as many rows.
+#extension GL_EXT_scalar_block_layout : require
+#include "abi.glsl"
+#ifdef WITH_TANGENTS
+#define LATTICE_ROWS TANGENT_ROWS
+#else
+#define LATTICE_ROWS GEOMETRY_ROWS
+#endif
 
 // Whatever else the block has by itself would count among the components.
 out gl_PerVertex { vec4 gl_Position; };
@@ -10,8 +17,8 @@ out gl_PerVertex { vec4 gl_Position; };
 #include "lib/whole.glsl"
 #include "lib/vertex.glsl"
 
-layout(points, invocations = GEOMETRY_ROWS) in;
-layout(triangle_strip, max_vertices = 2 * GEOMETRY_ROWS + 2) out;
+layout(points, invocations = LATTICE_ROWS) in;
+layout(triangle_strip, max_vertices = 2 * LATTICE_ROWS + 2) out;
 
 layout(location = 0) flat in uint in_patch[];
 layout(location = 1) flat in uint in_view[];
@@ -55,6 +62,7 @@ void main() {
     uint row = uint(gl_InvocationID);
     if (row >= n) return;
     fit_patch(record);
+    if (TANGENTS) tangent_level = required_level(levels);
     // From the end to the begin, so that triangles are counter-clockwise in (u, v).
 #ifdef TRIANGLES
     uint end = n - row;

@@ -13,6 +13,7 @@ void main() {
     uint number = instances[frame.first_patch + instance_part()];
     Patch record = patch_record(number);
     fit_patch(record);
+    if (TANGENTS) tangent_level = required_level(patch_levels(number, instance_view(), record));
     uint index = uint(gl_VertexIndex);
     uvec2 place = uvec2(index & ((1u << PATTERN_SHIFT) - 1u), index >> PATTERN_SHIFT);
     vec2 uv = lattice_uv(place, frame.flags >> FRAME_SEGMENTS_SHIFT & 127u);

@@ -43,6 +43,8 @@ Levels decided_levels() {
 
 void main() {
     Patch record = patch_record(in_patch);
-    vec2 uv = shared_coordinates(record, decided_levels(), gl_TessCoord);
+    Levels levels = decided_levels();
+    vec2 uv = shared_coordinates(record, levels, gl_TessCoord);
+    if (TANGENTS) tangent_level = required_level(levels);
     write_vertex(record, in_patch, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));
 }

@@ -380,7 +380,7 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 49] = [
+const NAMED: [(&str, &str, &str); 50] = [
     ("src/bin/hullform/figures/list/trees.rs", "quadtree", PAPERS),
     ("src/bin/hullform/figures/list/trees.rs", "gregory", PAPERS),
     ("src/bin/hullform/figures/list/trees.rs", "fas", PAPERS),
@@ -426,6 +426,7 @@ const NAMED: [(&str, &str, &str); 49] = [
     ("tests/cli_evaluation.rs", "bft", WORDS),
     ("tests/corners.rs", "quadtree", PLANS),
     ("tests/interruption.rs", "flat", WORDS),
+    ("tests/tangents.rs", "acc", TANGENTS),
     ("tests/view/steps.rs", "quadtree", WORDS),
     ("tests/view/steps.rs", "qas", WORDS),
     ("tests/view/steps.rs", "pn", WORDS),
@@ -438,6 +439,7 @@ const RING: &str = "it is about the scratch ring, which one method uses";
 const NO_RING: &str = "it needs one that does not use the ring";
 const SCHEME: &str = "its tests need one that refuses schemes";
 const TABLES: &str = "it is about tables, which are a method's own";
+const TANGENTS: &str = "its tangents are patches of their own";
 const WORDS: &str = "it types what users type";
 
 /// Whether code has a string that is a method's name, or the name of one of its shaders.

@@ -68,6 +68,7 @@ fn animate(gpu: &Gpu, residence: Residence, frames: usize, growth: Option<u64>) 
     let loaded = gpu.load(&model, prepared, workarounds, options);
     let mut loaded = loaded.expect("it fits");
     let mut early = (0, 0);
+    let mut pieces = 0;
     for frame in 0..frames {
         let (cut, tags) = at(&model, frame);
         loaded.tags = tags;
@@ -76,6 +77,7 @@ fn animate(gpu: &Gpu, residence: Residence, frames: usize, growth: Option<u64>) 
         let drawn = loaded.capture(cut, Fill::Discard).expect("it is drawn");
         assert_eq!(drawn.counters.overflows, 0, "frame {frame}");
         let allocated = gpu.device.allocated_bytes();
+        let held = gpu.device.allocator().generate_report().allocations.len();
         let resident = resident().unwrap_or(0);
         if TOLD.contains(&(frame + 1)) {
             println!(
@@ -85,9 +87,14 @@ fn animate(gpu: &Gpu, residence: Residence, frames: usize, growth: Option<u64>) 
         }
         if frame < (frames / 4).max(CYCLE) {
             early = (allocated.max(early.0), resident.max(early.1));
+            pieces = held.max(pieces);
             continue;
         }
         assert!(allocated <= early.0, "frame {frame}: {allocated} {early:?}");
+        assert!(
+            held <= pieces,
+            "frame {frame}: {held} pieces of memory, {pieces} before"
+        );
         let grown = resident.saturating_sub(early.1);
         assert!(
             growth.is_none_or(|most| grown < most),

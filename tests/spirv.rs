@@ -319,3 +319,55 @@ fn every_position_is_invariant() {
     }
     assert_eq!(stages, BTreeSet::from(["geom", "tese", "vert"]));
 }
+
+/// A module of ours as an engine compiles it that has our sets elsewhere.
+#[cfg(feature = "shaderc")]
+fn compiled_by_engine(file: &str, first_set: Option<&str>) -> Vec<u32> {
+    use hullform::gpu::shaders::source;
+    use shaderc::{CompileOptions, Compiler, EnvVersion, ResolvedInclude, ShaderKind, TargetEnv};
+    let mut options = CompileOptions::new().expect("the compiler is there");
+    options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
+    options.add_macro_definition("STAGE_VERTEX", Some("1"));
+    if let Some(set) = first_set {
+        options.add_macro_definition("HULLFORM_SET", Some(set));
+    }
+    options.set_include_callback(|include, _, _, _| {
+        let content = source(include).ok_or_else(|| format!("there is no {include}"))?;
+        Ok(ResolvedInclude {
+            resolved_name: include.to_string(),
+            content: content.to_string(),
+        })
+    });
+    let compiler = Compiler::new().expect("the compiler is there");
+    let text = source(file).expect("it ships");
+    let compiled =
+        compiler.compile_into_spirv(text, ShaderKind::Vertex, file, "main", Some(&options));
+    compiled.expect("it compiles").as_binary().to_vec()
+}
+
+/// The numbers of the sets that a module has, a resource each.
+#[cfg(feature = "shaderc")]
+fn sets(words: &[u32]) -> Vec<u32> {
+    const DECORATE: u32 = 71;
+    const DESCRIPTOR_SET: u32 = 34;
+    let all = instructions(bytemuck::cast_slice(words)).into_iter();
+    let of_set = |words: Vec<u32>| match words[..] {
+        [first, _, DESCRIPTOR_SET, set] if first & 0xffff == DECORATE => Some(set),
+        _ => None,
+    };
+    all.filter_map(of_set).collect()
+}
+
+/// Shaders of an engine that keeps lower sets for itself: the macro moves each of ours, as pipelines move those of our own modules.
+#[cfg(feature = "shaderc")]
+#[test]
+fn the_macro_moves_our_sets() {
+    let plain = sets(&compiled_by_engine("patches.vert", None));
+    let moved = sets(&compiled_by_engine("patches.vert", Some("2")));
+    assert!(
+        plain.len() > 2 && plain.iter().all(|&set| set < 3),
+        "{plain:?}"
+    );
+    let right: Vec<u32> = plain.iter().map(|set| set + 2).collect();
+    assert_eq!(moved, right);
+}

@@ -171,7 +171,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     )?);
     let frames = (0..FRAMES).map(|_| Commands::new(&gpu));
     let frames = frames.collect::<Result<Vec<_>, _>>()?;
-    let _idle = Idle(&gpu);
+    let idle = Idle(&gpu);
     for number in 0..wishes.frames.max(1) {
         let commands = &frames[number % FRAMES];
         commands.begin()?;
@@ -187,7 +187,11 @@ fn run() -> Result<(), Box<dyn Error>> {
             work.points, work.draws
         );
     }
-    drop(_idle);
+    for commands in &frames {
+        commands.wait()?;
+    }
+    // What was drawn last has been waited for.
+    std::mem::forget(idle);
     images.write_png(&wishes.picture)?;
     for model in &mut models {
         // SAFETY: the device is idle.

@@ -29,6 +29,12 @@ pub struct Instance {
     pub world_from_model: Mat4,
     pub colour: [f32; 3],
     pub gloss: f32,
+    /// How much of the highlight is that of brushed metal, whose grooves run along u; 0 to 1.
+    pub brushed: f32,
+    /// How rough that is along the grooves, and across.
+    pub roughness: [f32; 2],
+    /// How bright highlights are.
+    pub highlight: f32,
 }
 
 /// What all materials have in common.

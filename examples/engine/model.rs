@@ -282,6 +282,7 @@ fn pipelines<'g>(
     let own = matches!(pass, Pass::Picture).then(|| Fragment {
         module: *materials.fragment,
         constants: None,
+        tangents: true,
     });
     let layout_of = own.map(|_| OwnLayout {
         raw: *materials.layout,

@@ -137,12 +137,23 @@ pub fn place(sight: &Sight, model: usize, shape: &Shape, time: f32) -> Placed {
     }
 }
 
+/// What shines no more than this.
+const MATT: Instance = Instance {
+    world_from_model: Mat4::IDENTITY,
+    colour: [0.0; 3],
+    gloss: 0.0,
+    brushed: 0.0,
+    roughness: [0.10, 0.45],
+    highlight: 0.3,
+};
+
 /// The ground: one instance of a square.
 pub fn ground(sight: &Sight, shape: &Shape) -> Placed {
     let instances = vec![Instance {
         world_from_model: Mat4::from_scale(Vec3::splat(60.0)),
         colour: [0.52, 0.49, 0.45],
         gloss: 0.0,
+        ..MATT
     }];
     let views = seen(sight, &instances);
     let mut levels = [(); 4].map(|()| 0..0);
@@ -190,5 +201,9 @@ fn instance(model: usize, number: usize, shape: &Shape, scale: f32, time: f32) -
         world_from_model,
         colour: (colours[model % 3] * shade).into(),
         gloss: 1.0,
+        // The third model is of brushed metal.
+        brushed: if model % 3 == 2 { 1.0 } else { 0.0 },
+        highlight: if model % 3 == 2 { 1.2 } else { 0.3 },
+        ..MATT
     }
 }

@@ -8,6 +8,8 @@
 layout(location = 0) in vec3 in_position;
 layout(location = 1) centroid in vec3 in_normal;
 layout(location = 4) flat in uint in_drawn;
+// The derivative by u, which pipelines have that ask for tangents.
+layout(location = 5) centroid in vec3 in_du;
 
 layout(location = 0) out vec4 out_colour;
 
@@ -16,6 +18,9 @@ struct Instance {
     mat4 world_from_model;
     vec3 colour;
     float gloss;
+    float brushed;
+    vec2 roughness;
+    float highlight;
 };
 struct Light {
     mat4 shadow_from_world;
@@ -43,6 +48,15 @@ float sunlight(vec3 world, vec3 normal) {
     return lit / 16.0;
 }
 
+// The highlight of brushed metal (Ward 1992): its grooves run along u, and it is narrow along them and wide across.
+float brushed_highlight(vec3 normal, vec3 along, vec3 halfway, vec2 roughness) {
+    vec3 groove = along - dot(along, normal) * normal;
+    if (dot(groove, groove) == 0.0) return 0.0;
+    groove = normalize(groove);
+    vec2 slope = vec2(dot(halfway, groove), dot(halfway, cross(normal, groove))) / roughness;
+    return exp(-2.0 * dot(slope, slope) / (1.0 + max(dot(halfway, normal), 0.0)));
+}
+
 void main() {
     Instance instance = instances[drawn_view(in_drawn)];
     vec3 world = (instance.world_from_model * vec4(in_position, 1.0)).xyz;
@@ -59,8 +73,10 @@ void main() {
     vec3 ambient = mix(vec3(0.12, 0.095, 0.075), vec3(0.17, 0.21, 0.29), 0.5 + 0.5 * normal.y) * open;
     vec3 halfway = normalize(light.sun + to_eye);
     float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
-    float highlight = pow(max(dot(normal, halfway), 0.0), 48.0) * direct;
+    vec3 along = mat3(instance.world_from_model) * in_du;
+    float plain = pow(max(dot(normal, halfway), 0.0), 48.0);
+    float highlight = mix(plain, brushed_highlight(normal, along, halfway, instance.roughness), instance.brushed) * direct;
     vec3 colour = instance.colour * (ambient + vec3(1.00, 0.88, 0.70) * direct);
-    colour += instance.gloss * (0.30 * highlight * vec3(1.0, 0.95, 0.85) + 0.20 * grazing * SKY * open);
+    colour += instance.gloss * (instance.highlight * highlight * vec3(1.0, 0.95, 0.85) + 0.20 * grazing * SKY * open);
     out_colour = vec4(mix(SKY, colour, exp(-pow(far * light.haze, 3.0))), 1.0);
 }

@@ -31,6 +31,18 @@ void displace(vec2 displacement, inout vec3 position, inout vec3 normal) {
     normal = unit(tilted);
 }
 
+// The derivatives of what is so moved, to first order as well; of the point and the normal before.
+void displace_tangents(vec2 displacement, vec3 position, vec3 normal, inout vec3 du, inout vec3 dv) {
+    vec3 slope;
+    precise vec3 at = position * displacement.y;
+    bumps(at, slope);
+    precise vec3 gradient = slope * (displacement.x * displacement.y);
+    precise vec3 moved_du = du + exact_dot(gradient, du) * normal;
+    precise vec3 moved_dv = dv + exact_dot(gradient, dv) * normal;
+    du = moved_du;
+    dv = moved_dv;
+}
+
 // The crack amplifier of VK-GL-CTS: where the bits of a position are odd in number, the vertex moves by a fiftieth of the picture. If faces
 // differ by a single bit somewhere on an edge, a hole opens there that one can see.
 vec4 amplified(vec4 clip, vec3 position) {

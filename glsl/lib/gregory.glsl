@@ -73,6 +73,7 @@ Blended blended(float a, float b, vec3 before, vec3 behind) {
 
 // On edges and at corners normals are what all faces have there; `edge` is CORNERS inside. `at` is the edge's beginning or its end where the point is a corner, or CORNERS.
 Point on_border(Patch record, Surface surface, uint edge, uint at, vec2 along) {
+    keep_tangents(surface.du, surface.dv);
     if (at < CORNERS) return Point(surface.position, patch_control(record, at).normal);
     if (edge >= CORNERS) return surface_point(surface);
     precise vec3 first = in_point[NEAR + edge] - in_point[edge];

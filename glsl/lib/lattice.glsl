@@ -70,4 +70,30 @@ Shares lattice_inside(TableFace face, vec2 uv) {
     return Shares(uvec4(lattice_row(face, i + 1u, j + 1u), above, right, 0u), vec4(over, rest, 0.0));
 }
 
+// What the shares of a point inside change by with u and v: those of its triangle or quad, which are its neighbour's on the other side of a line. Both have
+// the rows of `lattice_inside`.
+struct Changes {
+    vec4 by_u;
+    vec4 by_v;
+};
+
+Changes lattice_changes(TableFace face, vec2 uv) {
+    uint n = face.segments;
+    precise vec2 at = uv * float(n);
+    uint i = min(uint(at.x), n - 1u);
+    uint j = min(uint(at.y), face.corners == 3u ? n - 1u - i : n - 1u);
+    precise vec2 part = at - vec2(i, j);
+    precise vec2 rest = 1.0 - part;
+    if (face.corners == 4u) {
+        precise vec4 by_u = float(n) * vec4(-rest.y, rest.y, part.y, -part.y);
+        precise vec4 by_v = float(n) * vec4(-rest.x, -part.x, part.x, rest.x);
+        return Changes(by_u, by_v);
+    }
+    precise float over = (part.x + part.y) - 1.0;
+    if (over <= 0.0 || i + j + 2u > n) {
+        return Changes(float(n) * vec4(-1.0, 1.0, 0.0, 0.0), float(n) * vec4(-1.0, 0.0, 1.0, 0.0));
+    }
+    return Changes(float(n) * vec4(1.0, -1.0, 0.0, 0.0), float(n) * vec4(1.0, 0.0, -1.0, 0.0));
+}
+
 #endif

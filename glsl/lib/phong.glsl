@@ -15,6 +15,12 @@ vec3 projected(vec3 flat_point, uint i) {
     return on_plane;
 }
 
+// The derivative of a projection by what `flat_point` changes by.
+vec3 on_plane(vec3 flat_tangent, uint i) {
+    precise vec3 along = flat_tangent - exact_dot(flat_tangent, in_point[NORMALS + i]) * in_point[NORMALS + i];
+    return along;
+}
+
 vec3 towards(vec3 flat_point, vec3 bent) {
     precise vec3 position = (1.0 - SHARE) * flat_point + SHARE * bent;
     return position;

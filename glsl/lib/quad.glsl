@@ -12,6 +12,16 @@ vec4 quad_weights(vec2 uv) {
     return weights;
 }
 
+// What they change by with u, and with v.
+vec4 weights_by_u(vec2 uv) {
+    precise float t = 1.0 - uv.y;
+    return vec4(-t, t, uv.y, -uv.y);
+}
+vec4 weights_by_v(vec2 uv) {
+    precise float s = 1.0 - uv.x;
+    return vec4(-s, -uv.x, uv.x, s);
+}
+
 // On an edge only two of four corners count, or one of four edges: so both sides have the same bits, be the other a quad or a triangle.
 vec3 sum_of_four(vec4 weights, vec3 a, vec3 b, vec3 c, vec3 d) {
     precise vec3 sum = ((weights.x * a + weights.y * b) + weights.z * c) + weights.w * d;

@@ -23,7 +23,36 @@ vec3 surface_normal(Surface surface) {
     return reach(normal) > PARALLEL ? unit(normal) : vec3(0.0);
 }
 
+#ifdef STAGE_EVALUATION
+// Whether a fragment shader asks for tangents: a constant of the pipeline, so that who does not ask pays nothing. Geometry shaders have no components to
+// spare for them, and those that have are modules of their own.
+#ifndef STAGE_GEOMETRY
+layout(constant_id = 1) const bool TANGENTS = false;
+#elif defined(WITH_TANGENTS)
+const bool TANGENTS = true;
+#else
+const bool TANGENTS = false;
+#endif
+
+// The derivatives by the patch's u and v of the point that was evaluated last, for `lib/vertex.glsl`; nothing else reads them.
+vec3 kept_du = vec3(0.0);
+vec3 kept_dv = vec3(0.0);
+// The level that the patch's control points are there for, where tangents are asked for.
+uint tangent_level = 0u;
+
+void keep_tangents(vec3 du, vec3 dv) {
+    if (!TANGENTS) return;
+    kept_du = du;
+    kept_dv = dv;
+}
+#endif
+
 // The point with the normal that its tangents give.
-Point surface_point(Surface surface) { return Point(surface.position, surface_normal(surface)); }
+Point surface_point(Surface surface) {
+#ifdef STAGE_EVALUATION
+    keep_tangents(surface.du, surface.dv);
+#endif
+    return Point(surface.position, surface_normal(surface));
+}
 
 #endif

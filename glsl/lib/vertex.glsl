@@ -4,6 +4,7 @@
 
 #include "lib/displacement.glsl"
 #include "lib/interface.glsl"
+#include "lib/ptex.glsl"
 
 // Pipelines that evaluate with these functions and differ in their fragment shaders or targets draw the same depths: a pre-pass may be
 // compared with EQUAL (GLSL 4.60, section 4.8.1; SPIR-V, Invariant).
@@ -14,6 +15,12 @@ layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec2 out_uv;
 layout(location = 3) out vec2 out_texture;
 layout(location = 4) flat out uint out_drawn;
+// dP/du and dP/dv in the ptex face, for fragment shaders that ask for them; undefined for others.
+#if !defined(STAGE_GEOMETRY) || defined(WITH_TANGENTS)
+#define TANGENT_OUTPUTS
+layout(location = 5) out vec3 out_du;
+layout(location = 6) out vec3 out_dv;
+#endif
 
 layout(set = SET_TABLES, binding = BINDING_TABLES, scalar) readonly buffer TextureTable { vec2 texture_corners[]; };
 
@@ -48,7 +55,16 @@ uint slot_of(uint number) { return 0u; }
 
 void write_vertex(Patch record, uint number, uint view, vec2 uv, Point point) {
     vec2 displacement = views[view].displacement;
-    if (displacement.x != 0.0 && has_one_normal(record, uv)) displace(displacement, point.position, point.normal);
+    bool displaced = displacement.x != 0.0 && has_one_normal(record, uv);
+#ifdef TANGENT_OUTPUTS
+    if (TANGENTS) {
+        out_du = kept_du;
+        out_dv = kept_dv;
+        to_ptex_tangents(record, out_du, out_dv);
+        if (displaced) displace_tangents(displacement, point.position, point.normal, out_du, out_dv);
+    }
+#endif
+    if (displaced) displace(displacement, point.position, point.normal);
     out_position = point.position;
     out_normal = point.normal;
     out_uv = uv;

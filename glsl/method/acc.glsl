@@ -71,17 +71,11 @@ vec3 between(uint from, uint to) {
     return apart;
 }
 
-Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+// Both tangent patches: quadratic along, cubic across.
+Surface tangent_patches(vec3 position, vec2 uv) {
     precise vec2 rest = 1.0 - uv;
     vec2 in_u = vec2(rest.x, uv.x);
     vec2 in_v = vec2(rest.y, uv.y);
-    vec3 position = bicubic_position(Inner(in_point[INNER], in_point[INNER + 1u], in_point[INNER + 2u], in_point[INNER + 3u]), uv);
-    Spot spot = quad_spot(uv);
-    if (spot.corner < 4u) return Point(position, patch_control(record, spot.corner).normal);
-    uint edge = spot.edge;
-    if (edge < 4u) {
-        return Point(position, normal_on_edge(record, edge, in_point[FIRST + edge], edge_middle(edge), in_point[LAST + edge], spot.along));
-    }
     vec3 du = sum_of_four(cubic_weights(in_v.x, in_v.y), along_quadratic(in_point[FIRST], edge_middle(0u), in_point[LAST], in_u),
                           along_quadratic(in_point[TWO_THIRDS + 3u], between(0u, 1u), -in_point[THIRDS + 1u], in_u),
                           along_quadratic(in_point[THIRDS + 3u], between(3u, 2u), -in_point[TWO_THIRDS + 1u], in_u),
@@ -90,7 +84,22 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
                           along_quadratic(in_point[THIRDS], between(0u, 3u), -in_point[TWO_THIRDS + 2u], in_v),
                           along_quadratic(in_point[TWO_THIRDS], between(1u, 2u), -in_point[THIRDS + 2u], in_v),
                           along_quadratic(in_point[FIRST + 1u], edge_middle(1u), in_point[LAST + 1u], in_v));
-    return surface_point(Surface(position, du, dv));
+    return Surface(position, du, dv);
+}
+
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+    vec3 position = bicubic_position(Inner(in_point[INNER], in_point[INNER + 1u], in_point[INNER + 2u], in_point[INNER + 3u]), uv);
+    Spot spot = quad_spot(uv);
+    Surface surface = Surface(position, vec3(0.0), vec3(0.0));
+    // Borders have normals of their own, but no other tangents.
+    if (spot.edge >= 4u || TANGENTS) surface = tangent_patches(position, uv);
+    keep_tangents(surface.du, surface.dv);
+    if (spot.corner < 4u) return Point(position, patch_control(record, spot.corner).normal);
+    uint edge = spot.edge;
+    if (edge < 4u) {
+        return Point(position, normal_on_edge(record, edge, in_point[FIRST + edge], edge_middle(edge), in_point[LAST + edge], spot.along));
+    }
+    return surface_point(surface);
 }
 #endif
 

@@ -131,6 +131,25 @@ Point summed(uint number, Shares shares) {
     return point;
 }
 
+// The derivatives of what is drawn, linear between points of the face's own lattice.
+void keep_lattice_tangents(TableFace face, vec2 uv) {
+    Shares shares = lattice_inside(face, uv);
+    Changes changes = lattice_changes(face, uv);
+    vec3 origin = points[control_at(face.controls)].position;
+    precise vec3 du = vec3(0.0);
+    precise vec3 dv = vec3(0.0);
+    for (uint i = face.count; i-- > 0u;) {
+        precise vec2 weight = vec2(0.0);
+        for (uint k = 0u; k < 4u; ++k) {
+            weight += vec2(changes.by_u[k], changes.by_v[k]) * weights[face.weights + shares.rows[k] * face.count + i];
+        }
+        precise vec3 spoke = points[control_at(face.controls + i)].position - origin;
+        du += weight.x * spoke;
+        dv += weight.y * spoke;
+    }
+    keep_tangents(du, dv);
+}
+
 // Which face is asked and for what stands first, and the sum once: code that is there for each case would be run for all of them wherever some
 // invocations of a group are at edges and others inside.
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
@@ -152,6 +171,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     } else {
         shares = lattice_inside(face_at(number), uv);
     }
+    if (TANGENTS) keep_lattice_tangents(face_at(record.plan), uv);
     return summed(number, shares);
 }
 #endif

@@ -34,6 +34,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 bottom = in_point[0] * (1.0 - uv.x) + in_point[1] * uv.x;
     vec3 top = in_point[3] * (1.0 - uv.x) + in_point[2] * uv.x;
     vec3 along = (in_point[1] - in_point[0]) * (1.0 - uv.y) + (in_point[2] - in_point[3]) * uv.y;
+    keep_tangents(along, top - bottom);
     float greatest = max(max(reach(in_point[0]), reach(in_point[1])), max(reach(in_point[2]), reach(in_point[3])));
     vec3 normal = flat_normal(along, top - bottom, greatest);
     // Where the corner is straight, or two corners are one: of the diagonals, that is of the whole.

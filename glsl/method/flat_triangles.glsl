@@ -27,6 +27,7 @@ bool has_one_normal(Patch record, vec2 uv) { return min(min(uv.x, uv.y), 1.0 - u
 
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 position = in_point[0] * (1.0 - uv.x - uv.y) + in_point[1] * uv.x + in_point[2] * uv.y;
+    keep_tangents(in_point[1] - in_point[0], in_point[2] - in_point[0]);
     float greatest = max(max(reach(in_point[0]), reach(in_point[1])), reach(in_point[2]));
     return Point(position, flat_normal(in_point[1] - in_point[0], in_point[2] - in_point[0], greatest));
 }

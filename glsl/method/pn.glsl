@@ -50,8 +50,22 @@ vec3 edge_sum(uint i, float near, float far) {
     return sum;
 }
 
+// The derivative by weight i, the three being free: over edge i, which leaves the corner, over edge k, which comes to it, and over the middle.
+vec3 by_weight(uint i, vec3 w) {
+    uint j = (i + 1u) % 3u;
+    uint k = (i + 2u) % 3u;
+    precise vec3 leaving = w[j] * (2.0 * w[i] * in_point[NEAR + i] + w[j] * in_point[FAR + i]);
+    precise vec3 coming = w[k] * (w[k] * in_point[NEAR + k] + 2.0 * w[i] * in_point[FAR + k]);
+    precise vec3 sum = 3.0 * ((w[i] * w[i]) * in_point[i] + (leaving + coming)) + (6.0 * (w[j] * w[k])) * in_point[MIDDLE];
+    return sum;
+}
+
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 w = corner_weights(uv);
+    if (TANGENTS) {
+        vec3 by_first = by_weight(0u, w);
+        keep_tangents(by_weight(1u, w) - by_first, by_weight(2u, w) - by_first);
+    }
     precise vec3 pairs = w * w.yzx;
     precise vec3 squares = w * w;
     precise vec3 cubes = squares * w;

@@ -72,6 +72,8 @@ vec3 patch_point(Patch record, uint number) {
 }
 #endif
 
+#include "lib/bicubic.glsl"
+
 #ifdef STAGE_EVALUATION
 // What an edge from corner i to corner i + 1 adds, apart from its weight.
 vec3 edge_sum(uint i, float near, float far) {
@@ -84,6 +86,10 @@ vec3 sum_of_points(uint first, vec4 weights) {
 }
 
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+    if (TANGENTS) {
+        Surface surface = bicubic(Inner(in_point[INSIDE], in_point[INSIDE + 1u], in_point[INSIDE + 2u], in_point[INSIDE + 3u]), uv);
+        keep_tangents(surface.du, surface.dv);
+    }
     precise float s = 1.0 - uv.x;
     precise float t = 1.0 - uv.y;
     // Across edge i; at corner i edges i and i - 1 meet.

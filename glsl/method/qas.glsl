@@ -40,8 +40,20 @@ vec3 quadratic(uint first, vec3 squares, vec3 pairs) {
     return sum;
 }
 
+// Half of the derivative of the position by weight i, the three being free.
+vec3 by_weight(uint i, vec3 w) {
+    uint j = (i + 1u) % 3u;
+    uint k = (i + 2u) % 3u;
+    precise vec3 sum = w[i] * in_point[i] + (w[j] * in_point[3u + i] + w[k] * in_point[3u + k]);
+    return sum;
+}
+
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     vec3 w = corner_weights(uv);
+    if (TANGENTS) {
+        vec3 by_first = by_weight(0u, w);
+        keep_tangents(2.0 * (by_weight(1u, w) - by_first), 2.0 * (by_weight(2u, w) - by_first));
+    }
     precise vec3 squares = w * w;
     precise vec3 pairs = w * w.yzx;
     return Point(quadratic(0u, squares, pairs), unit(quadratic(6u, squares, pairs)));

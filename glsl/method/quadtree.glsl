@@ -349,11 +349,15 @@ bool has_one_normal(Patch record, vec2 uv) {
 // Row 1 is the position on an edge, row 2 that plus the derivative across.
 const Basis CURVE = Basis(vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, -1.0, 1.0, 0.0));
 
+// A point with its tangents, where it has some.
+struct Evaluated {
+    Point point;
+    vec3 du;
+    vec3 dv;
+};
+
 // Inside by the patch's own plan, on edges and at corners by those that all faces there share; on an edge that both sides evaluate alike, by its own again.
-Point evaluate_patch(Patch record, uint slot, vec2 uv) {
-#ifndef CACHED_POINTS
-    memoryBarrierBuffer();
-#endif
+Evaluated evaluate_place(Patch record, uint slot, vec2 uv) {
     Place place = find_place(record.flags, uv);
     uint used = use_of(record, place.number);
     uint flags = uses[used].flags;
@@ -381,11 +385,47 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     uint origin_use = origin_kind > 0u ? use_of_corner(record, origin_kind) : place.number;
     vec3 origin = origin_kind == ORIGIN_NONE ? vec3(0.0) : use_origin(slot, origin_use);
     precise vec3 vertex = limit + origin;
-    if (corner) return Point(vertex, limit_normal);
+    if (corner) return Evaluated(Point(vertex, limit_normal), vec3(0.0), vec3(0.0));
     precise vec3 position = (surface.position + base) + origin;
     precise vec3 du = scale * surface.du;
     precise vec3 dv = scale * surface.dv;
-    return surface_point(Surface(position, du, dv));
+    return Evaluated(Point(position, surface_normal(Surface(position, du, dv))), du, dv);
+}
+
+// A corner has the limit and its normal, and no tangents: differences along both edges stand for them, to second order, in the limit's plane. At an
+// extraordinary vertex, where only their directions have a limit, their lengths depend on how far they reach: to the first two vertices of the level.
+void corner_tangents(Patch record, uint slot, vec2 uv, Point corner, out vec3 du, out vec3 dv) {
+    float nearest = power_of_two(-int(tangent_level));
+    bool chords = tangent_level == 0u;
+    du = vec3(0.0);
+    dv = vec3(0.0);
+    for (uint i = 0u; i < 4u; ++i) {
+        bool by_u = (i & 1u) == 0u;
+        bool twice = i >= 2u;
+        precise float step = (twice && !chords ? 2.0 * nearest : nearest) * ((by_u ? uv.x : uv.y) > 0.5 ? -1.0 : 1.0);
+        precise vec2 at = by_u ? vec2(uv.x + step, uv.y) : vec2(uv.x, uv.y + step);
+        float weight = chords ? 0.5 : twice ? -1.0 : 2.0;
+        precise vec3 slope = (weight / step) * (evaluate_place(record, slot, at).point.position - corner.position);
+        du += by_u ? slope : vec3(0.0);
+        dv += by_u ? vec3(0.0) : slope;
+    }
+    du -= dot(du, corner.normal) * corner.normal;
+    dv -= dot(dv, corner.normal) * corner.normal;
+}
+
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+#ifndef CACHED_POINTS
+    memoryBarrierBuffer();
+#endif
+    Evaluated own = evaluate_place(record, slot, uv);
+    if (TANGENTS) {
+        vec3 du = own.du;
+        vec3 dv = own.dv;
+        bool corner = (uses[use_of(record, find_place(record.flags, uv).number)].flags & USE_LIMIT) != 0u;
+        if (corner) corner_tangents(record, slot, uv, own.point, du, dv);
+        keep_tangents(du, dv);
+    }
+    return own.point;
 }
 #endif
 

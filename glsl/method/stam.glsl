@@ -87,13 +87,26 @@ Surface eigen_surface(Patch record, uint vectors, vec2 uv) {
     return Surface(position, along_u, along_v);
 }
 
-// Edges away from the extraordinary vertex are those of B-splines. The others are evaluated by the face that they leave the vertex in.
-Point evaluate_patch(Patch record, uint slot, vec2 uv) {
-    if (uv == vec2(0.0)) return patch_control(record, LIMIT);
-    if (uv.x >= 1.0 || uv.y >= 1.0) return surface_point(regular_surface(record, uv));
+// Edges away from the extraordinary vertex are those of B-splines. The others are evaluated by the face that they leave the vertex in: its u is this one's v, and its
+// v runs against this one's u.
+Surface surface_at(Patch record, vec2 uv) {
+    if (uv.x >= 1.0 || uv.y >= 1.0) return regular_surface(record, uv);
     bool next = uv.x <= 0.0 && control_at(record.controls + NEXT_VECTORS) != HOLE;
     uint vectors = control_at(record.controls + (next ? NEXT_VECTORS : VECTORS));
-    return surface_point(eigen_surface(record, vectors, next ? uv.yx : uv));
+    Surface surface = eigen_surface(record, vectors, next ? uv.yx : uv);
+    return next ? Surface(surface.position, -surface.dv, surface.du) : surface;
+}
+
+// At an extraordinary vertex derivatives have no limit, or zero, and their directions along the edges have: those of the level's first vertices.
+Point evaluate_patch(Patch record, uint slot, vec2 uv) {
+    if (uv == vec2(0.0)) {
+        if (TANGENTS) {
+            float nearest = power_of_two(-int(tangent_level));
+            keep_tangents(surface_at(record, vec2(nearest, 0.0)).du, surface_at(record, vec2(0.0, nearest)).dv);
+        }
+        return patch_control(record, LIMIT);
+    }
+    return surface_point(surface_at(record, uv));
 }
 #endif
 

@@ -226,6 +226,8 @@ constants! {
     PATTERN_SHIFT = 7;
     /// Rows of a patch's lattice that the geometry shader can make: one an invocation.
     GEOMETRY_ROWS = 32;
+    /// The same where it hands on tangents.
+    TANGENT_ROWS = 16;
 
     /// Counter: patches that found no room in the ring and were not drawn.
     COUNTER_OVERFLOWS = 0;

@@ -59,9 +59,9 @@ fn cases() -> Vec<Case> {
             if !method.contract.watertight {
                 continue;
             }
-            let spacings: &[Spacing] = match backend {
-                Backend::Tessellator => &SPACINGS,
-                Backend::Pattern | Backend::Geometry => &[Spacing::Equal],
+            let spacings: &[Spacing] = match backend.takes_any_level() {
+                true => &SPACINGS,
+                false => &[Spacing::Equal],
             };
             for &spacing in spacings {
                 let name = format!("backends.tags.{what}-{}", spacing_name(spacing));
@@ -112,10 +112,10 @@ impl Drawn {
         let has_ring = prepared.passes.iter().any(|pass| pass.cached.is_some());
         let options = SurfaceOptions {
             backend,
-            residence: match backend {
-                // What the tessellator draws through the ring the others draw from a cache.
-                Backend::Pattern | Backend::Geometry if has_ring => Residence::Cache,
-                _ => Residence::Ring,
+            // What the tessellator draws through the ring the others draw from a cache.
+            residence: match has_ring && !backend.takes_ring() {
+                true => Residence::Cache,
+                false => Residence::Ring,
             },
             ..capturing(context, &prepared, backend.cut(cut))
         };

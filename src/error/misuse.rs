@@ -74,6 +74,14 @@ pub enum Misuse {
         /// How many an instance has.
         eyes: u32,
     },
+    /// Tangents of a method that has none.
+    #[error(
+        "patches of {shader} have no tangents: choose another method, or a fragment shader that asks for none"
+    )]
+    NoTangents {
+        /// The file in `glsl/method` that evaluates them.
+        shader: &'static str,
+    },
     /// Multiview with a backend whose shaders know nothing of it.
     #[error("the backend {backend} draws one view at a time; the tessellator knows multiview")]
     MultiviewBackend {

@@ -135,7 +135,7 @@ impl Bounds {
     /// Points and vertices of a patch.
     fn needs(&self, pass: &Pass, cut: Cut, patch: usize) -> [u32; 2] {
         let levels = cut.levels(pass, patch);
-        let vertices = levels.map_or(0, |levels| self.backend.vertices(&levels, cut.spacing));
+        let vertices = levels.map_or(0, |levels| self.backend.evaluations(&levels, cut.spacing));
         let points = match self.uses_ring(pass) {
             true => cut.points(pass, patch),
             false => 0,

@@ -3,17 +3,13 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rustc_hash::FxHashMap;
-
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
 use crate::frame::{Backend, Cut, Decides, Draw, Residence, SurfaceOptions};
 use crate::method::{DepthTags, Pass, Prepared};
-use crate::tessellation::{
-    Levels, lattice_segments, lattice_vertices, levels_of_edges, pattern, triangulate,
-};
+use crate::tessellation::{Levels, levels_of_edges};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
 ///
@@ -106,7 +102,7 @@ impl DrawList {
     /// Fills in draws, and what the host decides about each patch where it does.
     fn decide(&mut self, prepared: &Prepared) {
         let records = self.options.has_host_slots() || self.tagged.is_some();
-        let patterns = self.options.backend == Backend::Pattern;
+        let patterns = self.options.backend.has_patterns();
         let mut all = Patterns::default();
         for pass in &prepared.passes {
             let room = |wanted: bool| if wanted { pass.patches.len() } else { 0 };
@@ -200,7 +196,7 @@ impl DrawList {
     /// Whether it holds what must be on the device before it is drawn.
     pub fn has_decisions(&self) -> bool {
         self.options.has_host_slots()
-            || self.options.backend == Backend::Pattern
+            || self.options.backend.has_patterns()
             || self.tagged.is_some()
     }
 
@@ -261,10 +257,7 @@ impl DrawList {
         let Some(levels) = self.levels(prepared, pass, patch) else {
             return 0;
         };
-        match self.options.backend {
-            Backend::Tessellator => levels.vertices(self.cut.spacing),
-            Backend::Pattern | Backend::Geometry => lattice_vertices(&levels),
-        }
+        self.options.backend.vertices(&levels, self.cut.spacing)
     }
 
     /// The triangles of a patch: counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order. None where these are
@@ -277,19 +270,7 @@ impl DrawList {
         uv: &[[f32; 2]],
     ) -> Option<Vec<[u32; 3]>> {
         let levels = self.levels(prepared, pass, patch)?;
-        if self.options.backend == Backend::Tessellator {
-            let triangles = triangulate(levels.domain, uv);
-            let expected = levels.triangles(self.cut.spacing) as usize;
-            return (triangles.len() >= expected).then_some(triangles);
-        }
-        let segments = lattice_segments(&levels) as f32;
-        let place = |at: &[f32; 2]| at.map(|x| (x * segments) as u32);
-        let numbers: FxHashMap<[u32; 2], u32> = uv.iter().map(place).zip(0..).collect();
-        let numbered = |places: [[u32; 2]; 3]| {
-            let [a, b, c] = places.map(|place| numbers.get(&place).copied());
-            Some([a?, b?, c?])
-        };
-        pattern(&levels).into_iter().map(numbered).collect()
+        self.options.backend.join(&levels, self.cut.spacing, uv)
     }
 }
 

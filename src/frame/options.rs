@@ -110,7 +110,7 @@ impl SurfaceOptions {
         let host_slots = self.slots == Slots::Host && self.residence == Residence::Ring;
         let what = match () {
             () if self.decides == Decides::Host => return Ok(()),
-            () if self.backend != Backend::Tessellator => "another backend than the tessellator",
+            () if !self.backend.is_decided() => "another backend than the tessellator",
             () if host_slots => "slots by the host",
             () if self.count_vertices => "counted vertices",
             () => return Ok(()),
@@ -138,7 +138,7 @@ impl SurfaceOptions {
             ring: (self.residence == Residence::Ring).then(|| self.ring_points()),
             vertices,
             backend: self.backend,
-            instance_vertices: instance_vertices.filter(|_| self.backend == Backend::Tessellator),
+            instance_vertices: instance_vertices.filter(|_| self.backend.is_bounded()),
         }
     }
 

@@ -6,9 +6,9 @@ use rustc_hash::FxHashMap;
 
 use crate::abi;
 use crate::frame::patterns::{Key, key};
-use crate::frame::{Backend, Culled, Cut, DrawList};
+use crate::frame::{Culled, Cut, DrawList};
 use crate::method::{Pass, Prepared};
-use crate::tessellation::{Levels, pattern, required_level};
+use crate::tessellation::{Levels, required_level};
 
 /// What was decided about patches, counted: of each as often as there are views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -109,13 +109,12 @@ impl DrawList {
                 let Some(levels) = self.levels(prepared, number, patch as u32) else {
                     continue;
                 };
-                let triangles = match backend {
-                    Backend::Tessellator => levels.triangles(spacing),
-                    Backend::Pattern | Backend::Geometry => *patterns
-                        .entry(key(&levels))
-                        .or_insert_with(|| pattern(&levels).len() as u32),
+                let count = || backend.triangles(&levels, spacing);
+                let triangles = match backend.takes_any_level() {
+                    true => count(),
+                    false => *patterns.entry(key(&levels)).or_insert_with(count),
                 };
-                let vertices = backend.vertices(&levels, spacing);
+                let vertices = backend.evaluations(&levels, spacing);
                 outcome.add(pass, patch, &levels, [vertices, triangles]);
                 outcome.segments = outcome.segments.max(spacing.segments(levels.greatest()));
             }

@@ -6,9 +6,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Backend, DrawList};
+use crate::frame::DrawList;
+use crate::frame::backend::Mould;
 use crate::method::{Controls, Prepared, SurfacePoint};
-use crate::tessellation::{Levels, coordinates, lattice_segments, pattern, triangulate};
+use crate::tessellation::Levels;
 
 /// A vertex of a tessellated surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,12 +33,6 @@ pub struct Tessellated {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What all patches of the same levels have in common.
-struct Mould {
-    uv: Vec<[f32; 2]>,
-    triangles: Vec<[u32; 3]>,
-}
-
 impl DrawList {
     /// What drawing the list would give: of `prepared`, which it was made for, from its [controls](Prepared::controls). Patches are evaluated in parallel, in
     /// rayon's current pool; the result does not depend on how many threads there are.
@@ -53,6 +48,7 @@ impl DrawList {
             return Err(Error::Misuse(Misuse::OtherSurface));
         }
         prepared.check_count("control vertices", controls.vertices.len())?;
+        let (backend, spacing) = (self.options().backend, self.cut().spacing);
         let mut moulds: FxHashMap<Key, Arc<Mould>> = FxHashMap::default();
         let mut jobs = Vec::new();
         let (mut points, mut triangles) = (0u64, 0);
@@ -62,7 +58,8 @@ impl DrawList {
                     continue;
                 };
                 let mould = moulds.entry(key(&levels));
-                let mould = Arc::clone(mould.or_insert_with(|| Arc::new(self.mould(&levels))));
+                let mould =
+                    Arc::clone(mould.or_insert_with(|| Arc::new(backend.mould(&levels, spacing))));
                 points += mould.uv.len() as u64;
                 triangles += mould.triangles.len();
                 jobs.push((number, patch, mould));
@@ -95,33 +92,6 @@ impl DrawList {
             points: surface,
             triangles: faces,
         })
-    }
-
-    fn mould(&self, levels: &Levels) -> Mould {
-        if self.options().backend == Backend::Tessellator {
-            let uv = coordinates(levels, self.cut().spacing);
-            let triangles = triangulate(levels.domain, &uv);
-            return Mould { uv, triangles };
-        }
-        let segments = lattice_segments(levels) as f32;
-        let triangles = pattern(levels);
-        let mut places: Vec<[u32; 2]> = triangles.iter().flatten().copied().collect();
-        places.sort_unstable_by_key(|&[i, j]| [j, i]);
-        places.dedup();
-        let number = |[i, j]: [u32; 2]| {
-            let found = places.binary_search_by_key(&[j, i], |&[i, j]| [j, i]);
-            found.expect("every triangle's places are among them") as u32
-        };
-        Mould {
-            uv: places
-                .iter()
-                .map(|at| at.map(|x| x as f32 / segments))
-                .collect(),
-            triangles: triangles
-                .iter()
-                .map(|corners| corners.map(number))
-                .collect(),
-        }
     }
 }
 

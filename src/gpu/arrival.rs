@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::error::{Error, Result};
-use crate::gpu::{Backend, Batch, Drawing};
+use crate::gpu::{Batch, Drawing};
 use crate::method::Pass;
 
 /// How much of what was predicted has arrived.
@@ -86,15 +86,12 @@ impl Drawing<'_> {
     fn evaluations(&self, batch: Batch<'_>, patch: u32) -> u32 {
         let (list, pass) = (batch.list(), batch.pass());
         let (prepared, options) = (self.tables.prepared(), self.slot.options());
-        match options.backend {
-            Backend::Geometry if options.count_vertices => {
-                let levels = list.levels(prepared, pass, patch);
-                levels.map_or(0, |levels| {
-                    Backend::Geometry.vertices(&levels, list.cut().spacing)
-                })
-            }
-            _ => list.vertices(prepared, pass, patch),
+        if !options.count_vertices {
+            return list.vertices(prepared, pass, patch);
         }
+        let levels = list.levels(prepared, pass, patch);
+        let spacing = list.cut().spacing;
+        levels.map_or(0, |levels| options.backend.evaluations(&levels, spacing))
     }
 
     /// By pass and patch: vertices counted, or different ones captured. What is captured does not tell its pass, and counts for each.

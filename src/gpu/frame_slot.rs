@@ -9,12 +9,12 @@ use gpu_allocator::MemoryLocation;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Backend, Batch, Cut, Decides, DrawList, Residence, SurfaceOptions};
+use crate::frame::{Batch, Cut, Decides, DrawList, Residence, SurfaceOptions};
 use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::patterns::Patterns;
 use crate::gpu::pipeline::control_points;
-use crate::gpu::ring::{RING_ACCESS, stages};
+use crate::gpu::ring::RING_ACCESS;
 use crate::gpu::view::View;
 use crate::gpu::workaround::{Workaround, instance_vertices};
 use crate::gpu::{Buffer, Enabled, Layout, Memory, Tables};
@@ -91,7 +91,7 @@ impl FrameSlot {
         workarounds: &[&'static Workaround],
         options: SurfaceOptions,
     ) -> Result<FrameSlot> {
-        let geometry = options.backend == Backend::Geometry;
+        let geometry = options.backend.on_device().geometry_shader;
         Enabled::require(geometry, layout.enabled().geometry_shader, "geometryShader")?;
         let prepared = tables.prepared();
         let instance_vertices = instance_vertices(workarounds);
@@ -254,7 +254,7 @@ impl FrameSlot {
             let instances = bound.buffer_mut(instances);
             instances.write(0, bytemuck::cast_slice(numbers))?;
         }
-        if self.options.backend == Backend::Pattern {
+        if self.options.backend.has_patterns() {
             // SAFETY: this function's contract.
             unsafe { self.patterns.write(device, allocator, list.patterns())? };
         }
@@ -340,7 +340,7 @@ impl FrameSlot {
         }
         let views: Vec<abi::View> = views.iter().map(View::record).collect();
         let transfer = vk::PipelineStageFlags::TRANSFER;
-        let stages = stages(self.options.backend);
+        let stages = self.options.backend.on_device().readers;
         // Clip coordinates are made where patches are evaluated, and lit in the fragment shader.
         let mut seeing = stages | vk::PipelineStageFlags::FRAGMENT_SHADER;
         if self.options.decides == Decides::Device {
@@ -393,7 +393,7 @@ impl FrameSlot {
             vk::PipelineStageFlags::TRANSFER,
             vk::PipelineStageFlags::HOST,
         );
-        let stages = stages(self.options.backend);
+        let stages = self.options.backend.on_device().readers;
         let (read, host_read) = (vk::AccessFlags::TRANSFER_READ, vk::AccessFlags::HOST_READ);
         let counted = self.bound.buffer(self.numbers.counted).raw();
         // SAFETY: this function's contract.
@@ -456,9 +456,9 @@ impl FrameSlot {
 
     /// How many vertices an instance of a draw has, of so many patches.
     pub(super) fn vertices_of(&self, pass: &Pass, patches: u32) -> u32 {
-        match self.options.backend {
-            Backend::Geometry => patches,
-            _ => patches * control_points(pass, self.options.residence),
+        match self.options.backend.on_device().one_vertex {
+            true => patches,
+            false => patches * control_points(pass, self.options.residence),
         }
     }
 

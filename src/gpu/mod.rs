@@ -3,6 +3,7 @@
 //! The engine owns instance, device, queue and allocator; nothing here submits or waits.
 
 mod arrival;
+mod backend;
 mod barrier;
 mod bound;
 pub mod buffer;

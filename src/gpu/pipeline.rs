@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::shaders::{Embedded, Modules};
+use crate::gpu::shaders::{Embedded, Modules, moved};
 use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
@@ -33,6 +33,8 @@ struct MadeFor {
     eyes: u32,
     /// Whether they are for dynamic rendering.
     dynamic: bool,
+    /// The greatest level that they draw.
+    greatest_level: f32,
 }
 
 impl Pipelines {
@@ -71,6 +73,7 @@ impl Pipelines {
         from: &dyn Modules,
     ) -> Result<Pipelines> {
         options.check(&layout.enabled())?;
+        check_tangents(prepared, options)?;
         let attachments = options.target.attachments;
         let mut pipelines = Pipelines {
             pipelines: Vec::new(),
@@ -82,6 +85,10 @@ impl Pipelines {
                 spacing: options.spacing,
                 eyes: options.target.eyes(),
                 dynamic: matches!(attachments, Attachments::Dynamic { .. }),
+                greatest_level: match options.tangents() {
+                    true => options.backend.on_device().tangent_level,
+                    false => f32::INFINITY,
+                },
             }),
         };
         for pass in &prepared.passes {
@@ -132,13 +139,19 @@ impl Pipelines {
     /// The pipeline for a pass of a draw list.
     ///
     /// # Errors
-    /// [`Misuse::OtherPipelines`] when they were made for something else.
+    /// [`Misuse::OtherPipelines`] when they were made for something else; [`Misuse::BackendLevel`] for a level that geometry shaders have no room for beside
+    /// tangents.
     pub(super) fn for_pass(
         &self,
         prepared: &Prepared,
         list: &DrawList,
         pass: usize,
     ) -> Result<vk::Pipeline> {
+        let greatest = self.made_for.as_ref().map(|own| own.greatest_level);
+        if let Some(greatest) = greatest.filter(|&greatest| list.cut().level > greatest) {
+            let backend = list.options().backend.name();
+            return Err(Error::Misuse(Misuse::BackendLevel { backend, greatest }));
+        }
         let fits = self.made_for.as_ref().is_none_or(|own| {
             let SurfaceOptions {
                 backend, residence, ..
@@ -147,7 +160,7 @@ impl Pipelines {
             let shaders = prepared.passes.iter().map(|pass| pass.shader);
             own.backend == backend
                 && own.residence == residence
-                && (own.spacing == spacing || backend != Backend::Tessellator)
+                && (own.spacing == spacing || !backend.takes_any_level())
                 && shaders.eq(own.shaders.iter().copied())
         });
         let pipeline = self.pipelines.get(pass).filter(|_| fits);
@@ -196,6 +209,18 @@ impl Pipelines {
     }
 }
 
+/// # Errors
+/// [`Misuse::NoTangents`] where tangents are asked for that a method has not.
+fn check_tangents(prepared: &Prepared, options: &PipelineOptions<'_>) -> Result<()> {
+    let mut passes = prepared.passes.iter();
+    match passes.find(|pass| options.tangents() && !pass.has_tangents()) {
+        Some(pass) => Err(Error::Misuse(Misuse::NoTangents {
+            shader: pass.shader,
+        })),
+        None => Ok(()),
+    }
+}
+
 /// The file that evaluates a pass's patches.
 fn shader(pass: &Pass, residence: Residence) -> &'static str {
     match residence {
@@ -220,22 +245,22 @@ fn names(pass: &Pass, options: &PipelineOptions<'_>) -> Vec<(vk::ShaderStageFlag
         0 => "",
         _ => "multiview.",
     };
-    let spacing = options.spacing.name();
-    let mut stages = match options.backend {
-        Backend::Tessellator => vec![
-            (Stage::VERTEX, format!("{method}.vert")),
-            (Stage::TESSELLATION_CONTROL, format!("{method}.tesc")),
-            (
-                Stage::TESSELLATION_EVALUATION,
-                format!("{method}.{views}{spacing}.tese"),
-            ),
-        ],
-        Backend::Pattern => vec![(Stage::VERTEX, format!("{method}.pattern.vert"))],
-        Backend::Geometry => vec![
-            (Stage::VERTEX, "patches.vert".into()),
-            (Stage::GEOMETRY, format!("{method}.geom")),
-        ],
+    let tangents = if options.tangents() { "tangents." } else { "" };
+    let named = |&(stage, name): &(Stage, &str)| {
+        let name = name
+            .replace("{method}", method)
+            .replace("{views}", views)
+            .replace("{spacing}", options.spacing.name())
+            .replace("{tangents}", tangents);
+        (stage, name)
     };
+    let mut stages: Vec<_> = options
+        .backend
+        .on_device()
+        .stages
+        .iter()
+        .map(named)
+        .collect();
     // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours); depths need none.
     let shaded = matches!(options.fill, Fill::Solid(_) | Fill::Lines);
     if shaded && options.fragment.is_none() {
@@ -256,27 +281,6 @@ fn modules<'m>(
     let found = names(pass, options).into_iter();
     let found = found.map(|(stage, name)| Ok((stage, from.module(&name)?)));
     found.collect()
-}
-
-/// A module whose descriptor sets have numbers from `first` on.
-fn moved(words: &[u32], first: u32) -> Cow<'_, [u32]> {
-    if first == 0 {
-        return Cow::Borrowed(words);
-    }
-    // SPIR-V, "Physical Layout" and OpDecorate: the first word has length and opcode, then come the target, the decoration, and its number.
-    const HEADER: usize = 5;
-    const DECORATE: u32 = 71;
-    const DESCRIPTOR_SET: u32 = 34;
-    let mut moved = words.to_vec();
-    let mut at = HEADER;
-    while at < moved.len() {
-        let (length, opcode) = (moved[at] >> 16, moved[at] & 0xffff);
-        if opcode == DECORATE && moved[at + 2] == DESCRIPTOR_SET {
-            moved[at + 3] += first;
-        }
-        at += length.max(1) as usize;
-    }
-    Cow::Owned(moved)
 }
 
 /// What a pipeline is made of, its shaders aside.
@@ -326,20 +330,25 @@ impl PipelinePlan<'_> {
         cache: vk::PipelineCache,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
-        let shading = self.options.fill.shading().to_ne_bytes();
-        let constants = [vk::SpecializationMapEntry::default().size(shading.len())];
+        // What the colours mean, in fragment shaders, and whether tangents are asked for, where patches are evaluated.
+        let constants = [
+            self.options.fill.shading(),
+            u32::from(self.options.tangents()),
+        ];
+        let entries = [0, 1].map(|number| {
+            vk::SpecializationMapEntry::default()
+                .constant_id(number)
+                .offset(4 * number)
+                .size(4)
+        });
         let constants = vk::SpecializationInfo::default()
-            .map_entries(&constants)
-            .data(&shading);
+            .map_entries(&entries)
+            .data(bytemuck::bytes_of(&constants));
         let stages = self.stages(modules, &constants);
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(
-            match self.options.backend {
-                Backend::Tessellator => vk::PrimitiveTopology::PATCH_LIST,
-                Backend::Pattern => vk::PrimitiveTopology::TRIANGLE_LIST,
-                Backend::Geometry => vk::PrimitiveTopology::POINT_LIST,
-            },
-        );
+        let backend = self.options.backend.on_device();
+        let assembly =
+            vk::PipelineInputAssemblyStateCreateInfo::default().topology(backend.topology);
         let tessellation = vk::PipelineTessellationStateCreateInfo::default()
             .patch_control_points(self.control_points);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
@@ -367,7 +376,7 @@ impl PipelinePlan<'_> {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(self.layout.raw);
-        if self.options.backend == Backend::Tessellator {
+        if backend.tessellates {
             info = info.tessellation_state(&tessellation);
         }
         let mut rendering = vk::PipelineRenderingCreateInfo::default();
@@ -409,10 +418,9 @@ impl PipelinePlan<'_> {
                 .module(module)
                 .name(c"main")
         };
-        let ours = modules.iter().map(|&(stage, module)| match stage {
-            vk::ShaderStageFlags::FRAGMENT => of(stage, module).specialization_info(constants),
-            _ => of(stage, module),
-        });
+        // A stage without such a constant takes no notice (Vulkan spec, VkSpecializationMapEntry).
+        let ours = modules.iter();
+        let ours = ours.map(|&(stage, module)| of(stage, module).specialization_info(constants));
         let own = self.options.fragment.as_ref();
         let own = own.filter(|_| self.options.fill != Fill::Discard);
         let own = own.map(|own| {

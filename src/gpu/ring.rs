@@ -6,8 +6,6 @@
 
 use ash::vk;
 
-use crate::frame::Backend;
-
 /// The stages that use the scratch memory.
 ///
 /// Both stages on both sides: evaluation to control alone would miss that two batches' control shaders write the same place.
@@ -20,15 +18,6 @@ pub const RING_STAGES: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw
 pub const RING_ACCESS: vk::AccessFlags = vk::AccessFlags::from_raw(
     vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
 );
-
-/// The stages that evaluate, and those that hand over to them.
-pub(super) fn stages(backend: Backend) -> vk::PipelineStageFlags {
-    match backend {
-        Backend::Tessellator => RING_STAGES,
-        Backend::Pattern => vk::PipelineStageFlags::VERTEX_SHADER,
-        Backend::Geometry => vk::PipelineStageFlags::GEOMETRY_SHADER,
-    }
-}
 
 /// The dependency of `subpass` on itself that [`cmd_ring_barrier`] needs.
 ///

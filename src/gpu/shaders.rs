@@ -58,6 +58,27 @@ impl Modules for Embedded {
     }
 }
 
+/// A module whose descriptor sets have numbers from `first` on.
+pub(super) fn moved(words: &[u32], first: u32) -> Cow<'_, [u32]> {
+    if first == 0 {
+        return Cow::Borrowed(words);
+    }
+    // SPIR-V, "Physical Layout" and OpDecorate: the first word has length and opcode, then come the target, the decoration, and its number.
+    const HEADER: usize = 5;
+    const DECORATE: u32 = 71;
+    const DESCRIPTOR_SET: u32 = 34;
+    let mut moved = words.to_vec();
+    let mut at = HEADER;
+    while at < moved.len() {
+        let (length, opcode) = (moved[at] >> 16, moved[at] & 0xffff);
+        if opcode == DECORATE && moved[at + 2] == DESCRIPTOR_SET {
+            moved[at + 3] += first;
+        }
+        at += length.max(1) as usize;
+    }
+    Cow::Owned(moved)
+}
+
 fn missing(name: &str) -> Error {
     Error::Refused(format!("there is no shader module {name}"))
 }

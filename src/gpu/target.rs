@@ -186,6 +186,9 @@ pub struct Fragment<'a> {
     pub module: vk::ShaderModule,
     /// Its constants.
     pub constants: Option<&'a vk::SpecializationInfo<'a>>,
+    /// Whether it gets tangents: dP/du at location 5 and dP/dv at location 6, in local units, by the (u, v) of the ptex face. Otherwise these two are
+    /// undefined, and cost nothing. See the manual, *Shaders*.
+    pub tangents: bool,
 }
 
 /// A pipeline layout of the engine's own: three sets in a row and the push constants are [`Layout`](super::Layout)'s, all others the engine's. It lives
@@ -219,12 +222,20 @@ pub struct PipelineOptions<'a> {
 }
 
 impl PipelineOptions<'_> {
+    /// Whether tangents are asked for.
+    pub(super) fn tangents(&self) -> bool {
+        self.fragment.is_some_and(|own| own.tangents)
+    }
+
     /// Whether a device can draw so.
     ///
     /// # Errors
     /// [`Misuse::Features`] for what it was created without; [`Misuse::MultiviewBackend`].
     pub(super) fn check(&self, enabled: &Enabled) -> Result<()> {
-        let (lines, geometry) = (self.fill == Fill::Lines, self.backend == Backend::Geometry);
+        let (lines, geometry) = (
+            self.fill == Fill::Lines,
+            self.backend.on_device().geometry_shader,
+        );
         let attachments = self.target.attachments;
         let dynamic = matches!(attachments, Attachments::Dynamic { .. });
         let multiview = self.target.view_mask != 0;
@@ -234,7 +245,7 @@ impl PipelineOptions<'_> {
         Enabled::require(geometry, enabled.geometry_shader, "geometryShader")?;
         Enabled::require(dynamic, enabled.dynamic_rendering, "dynamicRendering")?;
         Enabled::require(multiview, enabled.multiview, "multiviewTessellationShader")?;
-        if multiview && self.backend != Backend::Tessellator {
+        if multiview && !self.backend.takes_multiview() {
             let backend = self.backend.name();
             return Err(Error::Misuse(Misuse::MultiviewBackend { backend }));
         }

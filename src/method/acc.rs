@@ -53,7 +53,11 @@ fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Resu
             })
             .collect()
     };
-    Ok(spokes.fill(model, [Pass::new("acc", Domain::Quads, 1, quad)], inner))
+    Ok(spokes.fill(
+        model,
+        [Pass::new("acc", Domain::Quads, 1, quad).with_tangents(tangents)],
+        inner,
+    ))
 }
 
 /// The points of an edge: next to its beginning, the tangent there, its field, the tangent at its end, and next to that.
@@ -74,8 +78,15 @@ struct Side {
     across: [Vec3; 2],
 }
 
-fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+fn tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
     let numbers = Numbers::new(pass, given, patch, [4, PER_EDGE]);
+    let (bicubic, sides) = net(pass, &numbers, patch);
+    let Surface { du, dv, .. } = tangent_patches(&bicubic, &sides, uv);
+    [du, dv]
+}
+
+/// The points of a patch, and what it has along its edges.
+fn net(pass: &Pass, numbers: &Numbers, patch: usize) -> (Bicubic, [Side; 4]) {
     let bicubic = Bicubic {
         corners: std::array::from_fn(|i| numbers.point(i)),
         near: std::array::from_fn(|i| numbers.edge_point(i, NEAR)),
@@ -84,8 +95,13 @@ fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     };
     let cosines = &pass.tables[0][4 * pass.patches[patch].plan as usize..];
     let cosine = |corner: usize| f32::from_bits(cosines[corner % 4]);
-    let sides: [Side; 4] =
-        std::array::from_fn(|i| side(&numbers, &bicubic, i, [cosine(i), cosine(i + 1)]));
+    let sides = std::array::from_fn(|i| side(numbers, &bicubic, i, [cosine(i), cosine(i + 1)]));
+    (bicubic, sides)
+}
+
+fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let numbers = Numbers::new(pass, given, patch, [4, PER_EDGE]);
+    let (bicubic, sides) = net(pass, &numbers, patch);
     let surface = tangent_patches(&bicubic, &sides, uv);
     let on = edges_on(uv);
     let Some(edge) = (0..4).find(|&edge| on[edge]) else {

@@ -289,6 +289,35 @@ fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     }
 }
 
+/// The derivatives of what is drawn, linear between points of the face's own lattice.
+fn tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let [weights, faces, _] = &pass.tables[..] else {
+        return [Vec3::ZERO; 2];
+    };
+    let faces: &[TableFace] = bytemuck::cast_slice(faces);
+    let face = faces[pass.patches[patch].plan as usize];
+    let sums = Sums {
+        pass,
+        points: &given.points,
+        weights: bytemuck::cast_slice(weights),
+    };
+    let lattice = Lattice {
+        corners: face.corners,
+        segments: face.segments,
+    };
+    let shares = lattice.inside(uv.to_array());
+    let origin = Vec3::from(sums.point(face, 0).position);
+    lattice.changes(uv.to_array()).map(|changes| {
+        (0..face.count).rev().fold(Vec3::ZERO, |sum, i| {
+            let weight = |(&(row, _), change): (&(u32, f32), f32)| {
+                change * sums.weights[(face.weights + row * face.count + i) as usize]
+            };
+            let weight: f32 = shares.iter().zip(changes).map(weight).sum();
+            sum + weight * (Vec3::from(sums.point(face, i).position) - origin)
+        })
+    })
+}
+
 /// What is summed.
 struct Sums<'a> {
     pass: &'a Pass,

@@ -78,11 +78,11 @@ fn check(model: &Model) -> Result<()> {
 
 fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let level = options.isolation.check()?.level;
-    let [splines, cornered] =
-        ["fas", "fas_corners"].map(|shader| Pass::new(shader, Domain::Quads, 1, spline));
+    let [splines, cornered] = ["fas", "fas_corners"]
+        .map(|shader| Pass::new(shader, Domain::Quads, 1, spline).with_tangents(spline_tangents));
     let caps = Pass {
         caps: true,
-        ..Pass::new("fas_caps", Domain::Quads, 1, cap)
+        ..Pass::new("fas_caps", Domain::Quads, 1, cap).with_tangents(cap_tangents)
     };
     Ok(Levels::new(model, [splines, cornered, caps]).refine(level))
 }
@@ -93,8 +93,17 @@ fn points(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 16] {
     std::array::from_fn(|i| given.points[controls[i] as usize].position.into())
 }
 
-/// A B-spline patch. Behind the points stands the sharpness of the crease, if it has one.
 fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    point(&pass.patches[patch], uv, spline_surface(pass, given, patch))
+}
+
+fn spline_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let Surface { du, dv, .. } = spline_surface(pass, given, patch)(uv);
+    [du, dv]
+}
+
+/// A B-spline patch. Behind the points stands the sharpness of the crease, if it has one.
+fn spline_surface(pass: &Pass, given: &Controls, patch: usize) -> impl Fn(Vec2) -> Surface {
     let points = points(pass, given, patch);
     let abi::Patch { controls, plan, .. } = pass.patches[patch];
     let (edge, sharpness) = match plan >> abi::PIECE_CREASE_SHIFT & 7 {
@@ -104,10 +113,10 @@ fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint
             (edge - 1, f32::from_bits(bits))
         }
     };
-    point(&pass.patches[patch], uv, |uv| {
+    move |uv| {
         let (u, v) = creased(uv, edge, sharpness);
         bspline(u, v, 1.0, |x, y| points[x + 4 * y])
-    })
+    }
 }
 
 /// A point of a surface. At the corner of a single face, and at a cusp, the normal counts only if that at (1/64, 1/64) of the ptex face from there is like
@@ -135,17 +144,26 @@ fn point(patch: &abi::Patch, uv: Vec2, surface: impl Fn(Vec2) -> Surface) -> Sur
     }
 }
 
-/// An end cap: corners, the points next to each on its edge, those next to the other end, and those inside.
 fn cap(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let bicubic = bicubic(pass, given, patch);
+    point(&pass.patches[patch], uv, |uv| bicubic.surface(uv))
+}
+
+fn cap_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let Surface { du, dv, .. } = bicubic(pass, given, patch).surface(uv);
+    [du, dv]
+}
+
+/// An end cap: corners, the points next to each on its edge, those next to the other end, and those inside.
+fn bicubic(pass: &Pass, given: &Controls, patch: usize) -> Bicubic {
     let points = points(pass, given, patch);
     let four = |first: usize| std::array::from_fn(|i| points[first + i]);
-    let bicubic = Bicubic {
+    Bicubic {
         corners: four(0),
         near: four(4),
         far: four(8),
         inner: four(12),
-    };
-    point(&pass.patches[patch], uv, |uv| bicubic.surface(uv))
+    }
 }
 
 #[cfg(test)]

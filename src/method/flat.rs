@@ -36,8 +36,9 @@ pub const METHOD: Method = Method {
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let topology = model.topology();
-    let mut quads = Pass::new("flat", Domain::Quads, 4, quad);
-    let mut triangles = Pass::new("flat_triangles", Domain::Triangles, 3, triangle);
+    let mut quads = Pass::new("flat", Domain::Quads, 4, quad).with_tangents(quad_tangents);
+    let mut triangles = Pass::new("flat_triangles", Domain::Triangles, 3, triangle)
+        .with_tangents(triangle_tangents);
     for part in patches::parts(model) {
         let pass = match part.domain {
             Domain::Quads => &mut quads,
@@ -85,7 +86,7 @@ fn push_controls(controls: &mut Vec<u32>, vertices: &[u32], part: Part) -> u32 {
     list
 }
 
-fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+fn corners(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 4] {
     let list = pass.patches[patch].controls as usize;
     let point = |corner: usize| {
         let ends = [0, 1].map(|end| pass.controls[list + 2 * corner + end] as usize);
@@ -96,11 +97,28 @@ fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
             .sum::<Vec3>()
             / vertices.len() as f32
     };
-    let corners: [Vec3; 4] = std::array::from_fn(point);
-    let [a, b, c, d] = corners;
-    let (bottom, top) = (a * (1.0 - uv.x) + b * uv.x, d * (1.0 - uv.x) + c * uv.x);
-    let along = (b - a) * (1.0 - uv.y) + (c - d) * uv.y;
+    std::array::from_fn(point)
+}
+
+/// The points at the bottom and the top, and the derivative by u.
+fn bilinear([a, b, c, d]: [Vec3; 4], uv: Vec2) -> [Vec3; 3] {
+    [
+        a * (1.0 - uv.x) + b * uv.x,
+        d * (1.0 - uv.x) + c * uv.x,
+        (b - a) * (1.0 - uv.y) + (c - d) * uv.y,
+    ]
+}
+
+fn quad_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let [bottom, top, along] = bilinear(corners(pass, given, patch), uv);
+    [along, top - bottom]
+}
+
+fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let corners = corners(pass, given, patch);
+    let [bottom, top, along] = bilinear(corners, uv);
     let own = normal(along, top - bottom, &corners);
+    let [a, b, c, d] = corners;
     SurfacePoint {
         position: bottom * (1.0 - uv.y) + top * uv.y,
         // Where the corner is straight, or two corners are one: of the diagonals, that is of the whole.
@@ -123,9 +141,18 @@ fn normal(du: Vec3, dv: Vec3, points: &[Vec3]) -> Vec3 {
     tangents.normal()
 }
 
-fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+fn vertices(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 3] {
     let controls = &pass.controls[pass.patches[patch].controls as usize..];
-    let [a, b, c] = [0, 1, 2].map(|corner| given.vertices[controls[corner] as usize]);
+    [0, 1, 2].map(|corner| given.vertices[controls[corner] as usize])
+}
+
+fn triangle_tangents(pass: &Pass, given: &Controls, patch: usize, _: Vec2, _: u32) -> [Vec3; 2] {
+    let [a, b, c] = vertices(pass, given, patch);
+    [b - a, c - a]
+}
+
+fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    let [a, b, c] = vertices(pass, given, patch);
     SurfacePoint {
         position: a * (1.0 - uv.x - uv.y) + b * uv.x + c * uv.y,
         normal: normal(b - a, c - a, &[a, b, c]),

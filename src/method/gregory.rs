@@ -44,8 +44,9 @@ pub const METHOD: Method = Method {
 };
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
-    let quads = Pass::new("gregory_quads", Domain::Quads, 1, quad);
-    let triangles = Pass::new("gregory", Domain::Triangles, 1, triangle);
+    let quads = Pass::new("gregory_quads", Domain::Quads, 1, quad).with_tangents(quad_tangents);
+    let triangles =
+        Pass::new("gregory", Domain::Triangles, 1, triangle).with_tangents(triangle_tangents);
     let spokes = Spokes::new(model, Family::Gregory);
     Ok(spokes.fill(model, [quads, triangles], |_, _| Vec::new()))
 }
@@ -117,6 +118,19 @@ fn blended([a, b]: [f32; 2], [before, behind]: [Vec3; 2]) -> (Vec3, Vec3) {
     let mean = (a * before + b * behind) / whole;
     // By b times this it changes with a, and by -a times this with b.
     (mean, (before - behind) / (whole * whole))
+}
+
+fn quad_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let numbers = Numbers::new(pass, given, patch, [4, PER_EDGE]);
+    let Surface { du, dv, .. } = quad_surface(&net::<4>(pass, &numbers, patch), uv);
+    [du, dv]
+}
+
+fn triangle_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let numbers = Numbers::new(pass, given, patch, [3, PER_EDGE]);
+    let net = net::<3>(pass, &numbers, patch);
+    let Surface { du, dv, .. } = triangle_surface(&net, corner_weights(uv));
+    [du, dv]
 }
 
 fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {

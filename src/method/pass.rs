@@ -1,10 +1,11 @@
 //! Patches that are drawn with one set of shaders, and how they read on the CPU.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::abi;
 use crate::method::cell::Cell;
+use crate::method::ptex;
 use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::table::Table;
 use crate::tessellation::Domain;
@@ -41,6 +42,8 @@ pub struct Pass {
     pub twin: Twin,
     /// Whether all patches are end caps, of which only the corners are on the limit.
     pub caps: bool,
+    /// The derivatives of what it computes; None where there are none.
+    pub(super) tangents: Option<TangentsAt>,
     /// Tells by which cell the inside of a patch is evaluated; None where patches have no plans.
     pub(super) cell: Option<CellAt>,
     /// How many control vertices bound a patch; None where they do not, see [`Pass::hull`].
@@ -53,6 +56,9 @@ pub struct Pass {
 
 /// A patch evaluated on the CPU in f32, from the bytes that the GPU gets: control vertices and points, patch, and where in its domain.
 pub type Twin = fn(&Pass, &Controls, usize, Vec2) -> SurfacePoint;
+
+/// The derivatives by a patch's own u and v, of a patch that is drawn at a plan level.
+pub(super) type TangentsAt = fn(&Pass, &Controls, usize, Vec2, u32) -> [Vec3; 2];
 
 /// The cell at (u, v) of a patch.
 pub(super) type CellAt = fn(&Pass, usize, Vec2) -> Option<Cell>;
@@ -80,6 +86,7 @@ impl Pass {
             max_level: abi::HIGHEST_LEVEL,
             twin,
             caps: false,
+            tangents: None,
             cell: None,
             hull: None,
             is_spline: false,
@@ -87,11 +94,45 @@ impl Pass {
         }
     }
 
+    /// The same with tangents.
+    pub(super) fn with_tangents(self, tangents: TangentsAt) -> Pass {
+        Pass {
+            tangents: Some(tangents),
+            ..self
+        }
+    }
+
+    /// Whether fragment shaders can have tangents of it.
+    pub fn has_tangents(&self) -> bool {
+        self.tangents.is_some()
+    }
+
+    /// What fragment shaders get that ask for tangents: dP/du and dP/dv in local units, by the (u, v) of the ptex face, at `uv` of the domain of patch `patch`, which is
+    /// drawn at tess level `level` (1..=64; of it only corners of irregular `quadtree` patches take notice, see the manual, *Shaders*). Without displacement. Zero where there is no
+    /// surface, as for [`evaluate`](Self::evaluate); None where patches have no tangents.
+    pub fn tangents(
+        &self,
+        controls: &Controls,
+        patch: usize,
+        uv: Vec2,
+        level: f32,
+    ) -> Option<[Vec3; 2]> {
+        let tangents = self.tangents?;
+        if !self.can_evaluate(controls, patch, uv) {
+            return Some([Vec3::ZERO; 2]);
+        }
+        let uv = self.domain.nearest(uv.to_array()).into();
+        let plan_level = (level.clamp(1.0, 64.0).ceil() as u32)
+            .next_power_of_two()
+            .ilog2();
+        let own = tangents(self, controls, patch, uv, plan_level);
+        Some(ptex::to_ptex_tangents(&self.patches[patch], own))
+    }
+
     /// Evaluates patch `patch` at `uv` of its own domain; what lies outside of that is moved to its edge. Where there is no such patch, (u, v) is
     /// no number, or the controls are of another number of vertices or points, there is no surface: position and normal are zero.
     pub fn evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-        let given = [controls.vertices.len(), controls.points.len()];
-        if self.is_vacant(patch) || uv.is_nan() || given != self.needs {
+        if !self.can_evaluate(controls, patch, uv) {
             return SurfacePoint::default();
         }
         (self.twin)(
@@ -100,6 +141,11 @@ impl Pass {
             patch,
             self.domain.nearest(uv.to_array()).into(),
         )
+    }
+
+    fn can_evaluate(&self, controls: &Controls, patch: usize, uv: Vec2) -> bool {
+        let given = [controls.vertices.len(), controls.points.len()];
+        !self.is_vacant(patch) && !uv.is_nan() && given == self.needs
     }
 
     /// The same at many places, each a patch and (u, v), in parallel in rayon's current pool.

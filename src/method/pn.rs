@@ -8,8 +8,9 @@ use glam::{Vec2, Vec3};
 
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
+use crate::method::bicubic::Bicubic;
 use crate::method::quads::{quad_weights, sum_of_four};
-use crate::method::surface::{Controls, SurfacePoint};
+use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
 use crate::method::unit::{direction, unit};
 use crate::method::vertices::{self, control_points};
@@ -43,8 +44,9 @@ pub const METHOD: Method = Method {
 };
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
-    let quads = Pass::new("pn_quads", Domain::Quads, 1, quad);
-    let triangles = Pass::new("pn", Domain::Triangles, 1, triangle);
+    let quads = Pass::new("pn_quads", Domain::Quads, 1, quad).with_tangents(quad_tangents);
+    let triangles =
+        Pass::new("pn", Domain::Triangles, 1, triangle).with_tangents(triangle_tangents);
     Ok(vertices::by_vertices(model, [quads, triangles]))
 }
 
@@ -62,15 +64,41 @@ fn edge_normal(a: Vec3, b: Vec3, na: Vec3, nb: Vec3) -> Vec3 {
     unit(sum - (2.0 * along.dot(sum)) * along)
 }
 
+/// Of each edge from corner i to the next, the point next to i, and that next to the other.
+fn edge_points<const N: usize>(p: [Vec3; N], n: [Vec3; N]) -> [[Vec3; N]; 2] {
+    [
+        std::array::from_fn(|i| edge_point(p[i], p[(i + 1) % N], n[i])),
+        std::array::from_fn(|i| edge_point(p[(i + 1) % N], p[i], n[(i + 1) % N])),
+    ]
+}
+
+/// The point in the middle.
+fn middle_point(p: [Vec3; 3], [near, far]: [[Vec3; 3]; 2]) -> Vec3 {
+    let mean = (0.5 * THIRD) * sum_of_three([1.0; 3], [0, 1, 2].map(|i| near[i] + far[i]));
+    mean + 0.5 * (mean - THIRD * sum_of_three([1.0; 3], p))
+}
+
+fn triangle_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let (p, n): ([Vec3; 3], [Vec3; 3]) = control_points(pass, given, patch);
+    let [near, far] = edge_points(p, n);
+    let middle = middle_point(p, [near, far]);
+    let w = corner_weights(uv);
+    // By weight i, the three being free: over edge i, which leaves the corner, over edge k, which comes to it, and over the middle.
+    let by = [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let leaving = w[j] * (2.0 * w[i] * near[i] + w[j] * far[i]);
+        let coming = w[k] * (w[k] * near[k] + 2.0 * w[i] * far[k]);
+        3.0 * (w[i] * w[i] * p[i] + (leaving + coming)) + (6.0 * w[j] * w[k]) * middle
+    });
+    [by[1] - by[0], by[2] - by[0]]
+}
+
 fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let (p, n): ([Vec3; 3], [Vec3; 3]) = control_points(pass, given, patch);
-    // Of the edge from corner i to corner j = i + 1, the point next to i, and that next to j.
-    let near: [Vec3; 3] = [0, 1, 2].map(|i| edge_point(p[i], p[(i + 1) % 3], n[i]));
-    let far: [Vec3; 3] = [0, 1, 2].map(|i| edge_point(p[(i + 1) % 3], p[i], n[(i + 1) % 3]));
+    let [near, far] = edge_points(p, n);
     let between: [Vec3; 3] =
         [0, 1, 2].map(|i| edge_normal(p[i], p[(i + 1) % 3], n[i], n[(i + 1) % 3]));
-    let mean = (0.5 * THIRD) * sum_of_three([1.0; 3], [0, 1, 2].map(|i| near[i] + far[i]));
-    let middle = mean + 0.5 * (mean - THIRD * sum_of_three([1.0; 3], p));
+    let middle = middle_point(p, [near, far]);
     let w = corner_weights(uv);
     let pairs = [w[0] * w[1], w[1] * w[2], w[2] * w[0]];
     let edges = [0, 1, 2].map(|i| w[i] * near[i] + w[(i + 1) % 3] * far[i]);
@@ -103,10 +131,22 @@ fn inner_points(corners: [Vec3; 4], near: [Vec3; 4], far: [Vec3; 4]) -> [Vec3; 4
     })
 }
 
+fn quad_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let (corners, normals): ([Vec3; 4], [Vec3; 4]) = control_points(pass, given, patch);
+    let [near, far] = edge_points(corners, normals);
+    let bicubic = Bicubic {
+        corners,
+        near,
+        far,
+        inner: inner_points(corners, near, far),
+    };
+    let Surface { du, dv, .. } = bicubic.surface(uv);
+    [du, dv]
+}
+
 fn quad(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let (p, n): ([Vec3; 4], [Vec3; 4]) = control_points(pass, given, patch);
-    let near: [Vec3; 4] = std::array::from_fn(|i| edge_point(p[i], p[(i + 1) % 4], n[i]));
-    let far: [Vec3; 4] = std::array::from_fn(|i| edge_point(p[(i + 1) % 4], p[i], n[(i + 1) % 4]));
+    let [near, far] = edge_points(p, n);
     let between: [Vec3; 4] =
         std::array::from_fn(|i| edge_normal(p[i], p[(i + 1) % 4], n[i], n[(i + 1) % 4]));
     // The mean of the corners and twice that of the edges' normals, in shares of a third and two thirds.

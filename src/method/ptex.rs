@@ -1,5 +1,7 @@
 //! Where a patch lies in its ptex face: the whole of it or a child, turned or not.
 
+use glam::Vec3;
+
 use crate::abi;
 
 /// Where (u, v) of a patch's own domain lies in its ptex face: the patch may be one of its children, and its domain may be turned.
@@ -167,9 +169,55 @@ fn turned(patch: &abi::Patch, [u, v]: [f32; 2]) -> [f32; 2] {
     }
 }
 
+/// Derivatives by a patch's own (u, v) as those by its ptex face's. Twin of `glsl/lib/ptex.glsl`.
+pub(super) fn to_ptex_tangents(patch: &abi::Patch, [u, v]: [Vec3; 2]) -> [Vec3; 2] {
+    let turned = match turn(patch) {
+        (0, _) => [u, v],
+        (1, true) => [-v, u - v],
+        (_, true) => [v - u, -u],
+        (1, false) => [-v, u],
+        (2, false) => [-u, -v],
+        (_, false) => [v, -u],
+    };
+    let scale = match child(patch) {
+        Child::Whole => 1.0,
+        Child::Corner(_) => 2.0,
+        Child::Middle => -2.0,
+        Child::Piece(piece) => 1.0 / piece.size(),
+    };
+    turned.map(|tangent| scale * tangent)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// On a plane that is linear in the face's own (u, v).
+    #[test]
+    fn tangents_follow_children_and_turns() {
+        let (du, dv) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-2.0, 1.0, 0.5));
+        for child in 0..=8u32 {
+            let turns = match child {
+                ..abi::CHILD_OF_TRIANGLE => 4,
+                _ => 3,
+            };
+            for turn in 0..turns {
+                let patch = abi::Patch {
+                    flags: child << abi::PATCH_CHILD_SHIFT | turn << abi::PATCH_TURN_SHIFT,
+                    ..Default::default()
+                };
+                let at = |uv| {
+                    let [u, v] = to_ptex(&patch, uv);
+                    u * du + v * dv
+                };
+                let own = [
+                    at([1.0, 0.0]) - at([0.0, 0.0]),
+                    at([0.0, 1.0]) - at([0.0, 0.0]),
+                ];
+                assert_eq!(to_ptex_tangents(&patch, own), [du, dv], "{child} {turn}");
+            }
+        }
+    }
 
     #[test]
     fn pieces_lead_to_the_ptex_face_and_back() {

@@ -45,7 +45,7 @@ pub const METHOD: Method = Method {
 
 fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let hexagons = Hexagons::new(model);
-    let mut pass = Pass::new("qas", Domain::Triangles, 1, twin);
+    let mut pass = Pass::new("qas", Domain::Triangles, 1, twin).with_tangents(tangents);
     for part in patches::parts(model) {
         let (points, flags) = hexagons.of(part.face);
         vertices::add(&mut pass, model, part, &points, flags);
@@ -69,14 +69,32 @@ fn twin(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     }
 }
 
-/// The quadratic triangle through three corners and the middles of the edges from corner i to corner i + 1.
-fn quadratic([a, b, c, ab, bc, ca]: [Vec3; 6], uv: Vec2) -> Vec3 {
+fn tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let (points, _): ([Vec3; 6], [Vec3; 6]) = control_points(pass, given, patch);
+    let edges = edge_controls(points);
     let w = corner_weights(uv);
-    let edges = [
+    // Half of the derivative by weight i, the three being free.
+    let by = [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        w[i] * points[i] + (w[j] * edges[i] + w[k] * edges[k])
+    });
+    [1, 2].map(|i| 2.0 * (by[i] - by[0]))
+}
+
+/// Between the corners, on the edges from corner i to corner i + 1.
+fn edge_controls([a, b, c, ab, bc, ca]: [Vec3; 6]) -> [Vec3; 3] {
+    [
         edge_control(ab, a, b),
         edge_control(bc, b, c),
         edge_control(ca, c, a),
-    ];
+    ]
+}
+
+/// The quadratic triangle through three corners and the middles of the edges from corner i to corner i + 1.
+fn quadratic(points: [Vec3; 6], uv: Vec2) -> Vec3 {
+    let w = corner_weights(uv);
+    let edges = edge_controls(points);
+    let [a, b, c, ..] = points;
     let pairs = [w[0] * w[1], w[1] * w[2], w[2] * w[0]];
     sum_of_three(w.map(|w| w * w), [a, b, c]) + 2.0 * sum_of_three(pairs, edges)
 }

@@ -8,6 +8,12 @@ pub fn quad_weights(uv: Vec2) -> [f32; 4] {
     [s * t, uv.x * t, uv.x * uv.y, s * uv.y]
 }
 
+/// What they change by with u, and with v. Twin of `weights_by_u` and `weights_by_v` in `glsl/lib/quad.glsl`.
+pub fn quad_weight_changes(uv: Vec2) -> [[f32; 4]; 2] {
+    let Vec2 { x: u, y: v } = uv;
+    [[v - 1.0, 1.0 - v, v, -v], [u - 1.0, -u, u, 1.0 - u]]
+}
+
 /// A weighted sum over four corners, or over four edges. On an edge only two of the corners count, or one of the edges: so both sides have the
 /// same bits, be the other a quad or a triangle. Twin of `sum_of_four` in `glsl/lib/quad.glsl`.
 pub fn sum_of_four(weights: [f32; 4], points: [Vec3; 4]) -> Vec3 {

@@ -208,9 +208,11 @@ fn passes(options: PlanOptions) -> Vec<Pass> {
     // Masks of Catmull-Clark have no negative weights: a limit is within the hull of what it is a sum of.
     regular.hull = Some(|_, _| 16);
     regular.is_spline = true;
+    regular.tangents = Some(twin::regular_tangents);
     let irregular = ["quadtree", "quadtree_long"].map(|shader| Pass {
         cached: Some("quadtree_cached"),
         cell: Some(twin::cell),
+        tangents: Some(twin::irregular_tangents),
         hull: Some(twin::ring_size),
         ..pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options)
     });

@@ -54,8 +54,9 @@ fn prepare(model: &Model, _options: MethodOptions, _database: &Database) -> Resu
         model,
         net: &net,
         smooth: &smooth,
-        irregular: Pass::new("stam", Domain::Quads, 1, irregular),
-        regular: Pass::new("stam_regular", Domain::Quads, 1, regular),
+        irregular: Pass::new("stam", Domain::Quads, 1, irregular).with_tangents(irregular_tangents),
+        regular: Pass::new("stam_regular", Domain::Quads, 1, regular)
+            .with_tangents(regular_tangents),
         bases: Bases::default(),
         limits: FxHashMap::default(),
         blends: Vec::new(),
@@ -252,35 +253,75 @@ const GRID: usize = 3;
 const HOLE: u32 = u32::MAX;
 
 fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    on_grid_of(pass, given, patch, 0, uv).point()
+}
+
+fn regular_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let Surface { du, dv, .. } = on_grid_of(pass, given, patch, 0, uv);
+    [du, dv]
+}
+
+/// The B-spline of the grid that stands behind so many of a patch's numbers.
+fn on_grid_of(pass: &Pass, given: &Controls, patch: usize, first: usize, uv: Vec2) -> Surface {
     let record = &pass.patches[patch];
-    let point = |x: usize, y: usize| {
-        let number = pass.controls[record.controls as usize + x + 4 * y];
-        Vec3::from(given.points[number as usize].position)
-    };
-    regular_surface(record.flags, uv, point).point()
+    let numbers = &pass.controls[record.controls as usize + first..];
+    let point = |x: usize, y: usize| given.points[numbers[x + 4 * y] as usize].position.into();
+    regular_surface(record.flags, uv, point)
 }
 
 fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let record = &pass.patches[patch];
-    let number = |place: usize| pass.controls[record.controls as usize + place];
-    let position = |number: u32| Vec3::from(given.points[number as usize].position);
     if uv == Vec2::ZERO {
-        let limit = given.points[number(LIMIT) as usize];
+        let limit = pass.controls[record.controls as usize + LIMIT];
+        let limit = given.points[limit as usize];
         return SurfacePoint {
             position: limit.position.into(),
             normal: limit.normal.into(),
         };
     }
-    if uv.max_element() >= 1.0 {
-        let point = |x: usize, y: usize| position(number(GRID + x + 4 * y));
-        return regular_surface(record.flags, uv, point).point();
+    irregular_surface(pass, given, patch, uv).point()
+}
+
+/// At an extraordinary vertex derivatives have no limit, or zero, and their directions along the edges have: those of the level's first vertices.
+fn irregular_tangents(
+    pass: &Pass,
+    given: &Controls,
+    patch: usize,
+    uv: Vec2,
+    level: u32,
+) -> [Vec3; 2] {
+    let at = |uv: Vec2| irregular_surface(pass, given, patch, uv);
+    if uv == Vec2::ZERO {
+        let nearest = f32::from_bits((127 - level) << 23);
+        return [at(nearest * Vec2::X).du, at(nearest * Vec2::Y).dv];
     }
+    let Surface { du, dv, .. } = at(uv);
+    [du, dv]
+}
+
+/// Away from the extraordinary vertex itself.
+fn irregular_surface(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface {
+    if uv.max_element() >= 1.0 {
+        return on_grid_of(pass, given, patch, GRID, uv);
+    }
+    let record = &pass.patches[patch];
+    let number = |place: usize| pass.controls[record.controls as usize + place];
+    let position = |number: u32| Vec3::from(given.points[number as usize].position);
     let next = uv.x <= 0.0 && number(NEXT_VECTORS) != HOLE;
     let vectors = number(if next { NEXT_VECTORS } else { VECTORS });
-    let uv = if next { Vec2::new(uv.y, uv.x) } else { uv };
+    let own = if next { Vec2::new(uv.y, uv.x) } else { uv };
     let limit = position(number(LIMIT));
     let point = |vector: u32| position(vectors + vector);
-    eigen_surface(pass, record.plan, uv, limit, point).point()
+    let surface = eigen_surface(pass, record.plan, own, limit, point);
+    if !next {
+        return surface;
+    }
+    // The next face's u is this one's v, and its v runs against this one's u.
+    Surface {
+        du: -surface.dv,
+        dv: surface.du,
+        ..surface
+    }
 }
 
 /// Sum of four products, in the order of a B-spline's.

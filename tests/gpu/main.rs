@@ -27,6 +27,7 @@ mod recording;
 mod ring;
 mod scale;
 mod shapes;
+mod tangents;
 mod targets;
 mod twins;
 mod work;

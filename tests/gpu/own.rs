@@ -132,6 +132,7 @@ fn an_engine_brings_its_own_fragment_shader_and_sets() {
         fragment: Some(Fragment {
             module,
             constants: Some(&constants),
+            tangents: false,
         }),
         layout: Some(OwnLayout {
             raw: own.behind,

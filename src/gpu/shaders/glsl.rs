@@ -1,7 +1,7 @@
 //! The shader text of a folder, and the modules that it makes: which there are, what each is made of, and, with the compiler, their SPIR-V.
 //!
-//! `build.rs` and the library share this file. Every `method/NAME.glsl` makes up to ten modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
-//! `NAME.fractional-even.tese`, both once more as `NAME.multiview.*`, `NAME.pattern.vert`, `NAME.geom` and `NAME.frag`: the shells `surface.*` with
+//! `build.rs` and the library share this file. Every `method/NAME.glsl` makes up to eleven modules, `NAME.vert`, `NAME.tesc`, `NAME.equal.tese`,
+//! `NAME.fractional-even.tese`, both once more as `NAME.multiview.*`, `NAME.pattern.vert`, `NAME.geom`, the same with tangents as `NAME.tangents.geom`, and `NAME.frag`: the shells `surface.*` with
 //! the method in the place of their line `#include "method"`. Spacing is an execution mode, hence a module of its own. Methods that define
 //! `SCRATCH_RING` need control shaders, and have neither of the modules that do without; they have `NAME.comp`, which fills a cache. Every other
 //! stage file is a module of its own, named like the file; those in `conformance/` are called `conformance.FILE`, and those in `engine/` likewise.
@@ -17,7 +17,7 @@ pub type Result<T> = std::result::Result<T, String>;
 const OPTIONS: &str = "vulkan1.2 spirv1.5 performance";
 
 /// The shells, by the ending of the module's name and of the file, and the value of the macro `SPACING`.
-const SHELLS: [(&str, &str, Option<&str>); 10] = [
+const SHELLS: [(&str, &str, Option<&str>); 11] = [
     ("vert", "vert", None),
     ("tesc", "tesc", None),
     ("equal.tese", "tese", Some("equal_spacing")),
@@ -34,6 +34,7 @@ const SHELLS: [(&str, &str, Option<&str>); 10] = [
     ),
     ("pattern.vert", "pattern.vert", None),
     ("geom", "geom", None),
+    ("tangents.geom", "geom", None),
     ("frag", "frag", None),
     ("comp", "comp", None),
 ];
@@ -42,7 +43,7 @@ const SHELLS: [(&str, &str, Option<&str>); 10] = [
 const FOR_CACHE: &str = "comp";
 
 /// The shells that evaluate patches without a control shader.
-const WITHOUT_CONTROL: [&str; 2] = ["pattern.vert", "geom"];
+const WITHOUT_CONTROL: [&str; 3] = ["pattern.vert", "geom", "tangents.geom"];
 
 /// File extension and the macro that says so to the shader.
 const STAGES: [(&str, &str); 6] = [
@@ -64,6 +65,8 @@ pub struct Module {
     spacing: Option<&'static str>,
     /// Whether it is for rendering with a view mask.
     multiview: bool,
+    /// Whether it is a geometry shader that hands on tangents.
+    tangents: bool,
 }
 
 /// All shader text of a folder, by its path from there.
@@ -107,6 +110,7 @@ impl Sources {
                     stage: stage(&file).expect("the shells are stage files"),
                     spacing,
                     multiview: ending.starts_with("multiview"),
+                    tangents: ending.starts_with("tangents"),
                     file,
                 });
             }
@@ -119,6 +123,7 @@ impl Sources {
                     stage,
                     spacing: None,
                     multiview: false,
+                    tangents: false,
                     file: file.clone(),
                 });
             }
@@ -161,6 +166,9 @@ impl Sources {
         hash.text(module.spacing.unwrap_or_default());
         if module.multiview {
             hash.text("MULTIVIEW");
+        }
+        if module.tangents {
+            hash.text("WITH_TANGENTS");
         }
         let mut seen: Vec<&str> = Vec::new();
         let mut open = vec![module.file.as_str()];
@@ -274,6 +282,9 @@ pub fn compile(
     }
     if module.multiview {
         options.add_macro_definition("MULTIVIEW", Some("1"));
+    }
+    if module.tangents {
+        options.add_macro_definition("WITH_TANGENTS", Some("1"));
     }
     options.set_include_callback(|include, _, _, _| {
         let (file, text) = sources.resolve(module, include)?;

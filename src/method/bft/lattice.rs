@@ -84,6 +84,24 @@ impl Lattice {
         ]
     }
 
+    /// What the shares of a point [inside](Self::inside) change by with u and v: those of its triangle or quad, which are its neighbour's on the other side of a line.
+    /// Twin of `lattice_changes` in `glsl/lib/lattice.glsl`.
+    pub fn changes(self, uv: [f32; 2]) -> [[f32; 4]; 2] {
+        let n = self.segments;
+        let at = uv.map(|x| x * n as f32);
+        let i = (at[0] as u32).min(n - 1);
+        let j = (at[1] as u32).min(if self.corners == 3 { n - 1 - i } else { n - 1 });
+        let [x, y] = [at[0] - i as f32, at[1] - j as f32];
+        let own = if self.corners == 4 {
+            [[y - 1.0, 1.0 - y, y, -y], [x - 1.0, -x, x, 1.0 - x]]
+        } else if (x + y) - 1.0 <= 0.0 || i + j + 2 > n {
+            [[-1.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0]]
+        } else {
+            [[1.0, -1.0, 0.0, 0.0], [1.0, 0.0, -1.0, 0.0]]
+        };
+        own.map(|changes| changes.map(|change| n as f32 * change))
+    }
+
     /// Between the corners of the finest triangle or quad around a point inside: the paper's linear geomorph, with all vertices on a virtual
     /// mesh of the maximum level (section II-C).
     pub fn inside(self, uv: [f32; 2]) -> Shares {

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::abi::{self, TableFace, TablePlace};
 use crate::mesh::Model;
 use crate::method::bft::lattice::Lattice;
-use crate::method::bft::{Normals, Tables, domain, twin};
+use crate::method::bft::{Normals, Tables, domain, tangents, twin};
 use crate::method::children::{Child, children};
 use crate::method::{Pass, Table};
 use crate::tessellation::Domain;
@@ -17,7 +17,7 @@ pub fn passes(model: &Model, tables: &Tables) -> [Pass; 2] {
     [("bft_quads", Domain::Quads), ("bft", Domain::Triangles)].map(|(shader, domain)| {
         let mut packer = Packer {
             tables,
-            pass: Pass::new(shader, domain, 1, twin),
+            pass: Pass::new(shader, domain, 1, twin).with_tangents(tangents),
             numbers: FxHashMap::default(),
             offsets: FxHashMap::default(),
             order: Vec::new(),

@@ -9,7 +9,7 @@ use crate::abi;
 use crate::method::quadtree::NODE_KINDS;
 use crate::method::quadtree::places::place_at;
 use crate::method::quadtree::view::{self, Border};
-use crate::method::regular::{Place, exchanged, place, regular_surface};
+use crate::method::regular::{self, Place, exchanged, place};
 use crate::method::spline::{bspline, creased};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::{Cell, Pass};
@@ -18,17 +18,76 @@ use crate::plan::{Leaf, Plans, Row, RowsView, walk};
 
 /// A plain B-spline patch.
 pub fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    regular_surface(pass, given, patch, uv).point()
+}
+
+/// Its tangents.
+pub fn regular_tangents(
+    pass: &Pass,
+    given: &Controls,
+    patch: usize,
+    uv: Vec2,
+    _: u32,
+) -> [Vec3; 2] {
+    let Surface { du, dv, .. } = regular_surface(pass, given, patch, uv);
+    [du, dv]
+}
+
+fn regular_surface(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface {
     let abi::Patch {
         controls, flags, ..
     } = pass.patches[patch];
     let controls = &pass.controls[controls as usize..];
     let point = |x: usize, y: usize| given.vertices[controls[x + 4 * y] as usize];
-    regular_surface(flags, uv, point).point()
+    regular::regular_surface(flags, uv, point)
 }
 
 /// A patch with a border: runs the stencils that the point needs, and evaluates it. Each plan takes its ring relative to its first
 /// vertex: so sums err by what the ring's own size has for rounding, wherever it is.
 pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    match irregular_surface(pass, given, patch, uv) {
+        Evaluated::Surface(surface) => surface.point(),
+        Evaluated::Corner(corner) => corner,
+    }
+}
+
+/// Its tangents. A corner has the limit and its normal, and no tangents: differences along both edges stand for them, to second order, in the limit's plane.
+/// At an extraordinary vertex, where only their directions have a limit, their lengths depend on how far they reach: to the first two vertices of the
+/// level.
+pub fn irregular_tangents(
+    pass: &Pass,
+    given: &Controls,
+    patch: usize,
+    uv: Vec2,
+    level: u32,
+) -> [Vec3; 2] {
+    let corner = match irregular_surface(pass, given, patch, uv) {
+        Evaluated::Surface(Surface { du, dv, .. }) => return [du, dv],
+        Evaluated::Corner(corner) => corner,
+    };
+    let nearest = 1.0 / (1u32 << level) as f32;
+    let slope = |axis: Vec2, length: f32| {
+        let step = if uv.dot(axis) > 0.5 { -length } else { length };
+        let there = irregular(pass, given, patch, uv + step * axis);
+        (there.position - corner.position) / step
+    };
+    [Vec2::X, Vec2::Y].map(|axis| {
+        let tangent = match level {
+            0 => slope(axis, nearest),
+            _ => 2.0 * slope(axis, nearest) - slope(axis, 2.0 * nearest),
+        };
+        tangent - tangent.dot(corner.normal) * corner.normal
+    })
+}
+
+/// What a point of a patch with a border is.
+enum Evaluated {
+    Surface(Surface),
+    /// The limit of a corner, and its normal.
+    Corner(SurfacePoint),
+}
+
+fn irregular_surface(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Evaluated {
     let plans = plans(pass);
     let abi::Patch {
         controls, flags, ..
@@ -58,10 +117,10 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
     };
     if flags & abi::USE_LIMIT != 0 {
         let vertices = &given.vertices;
-        return SurfacePoint {
+        return Evaluated::Corner(SurfacePoint {
             position: one_use.point(vertices, 0) + one_use.origin(vertices),
             normal: one_use.vertex_normal(vertices, flags),
-        };
+        });
     }
     let side = flags >> abi::USE_SIDE_SHIFT;
     let surface = one_use.evaluate(&given.vertices, root, uv, side);
@@ -73,12 +132,11 @@ pub fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surfa
     // Half of the edge is the whole patch.
     let half = flags & (abi::USE_FIRST_HALF | abi::USE_SECOND_HALF) != 0;
     let scale = if half { 0.5 } else { 1.0 };
-    let surface = Surface {
+    Evaluated::Surface(Surface {
         position,
         du: scale * du,
         dv: scale * dv,
-    };
-    surface.point()
+    })
 }
 
 /// The kind of the node that the inside of a patch is evaluated by at (u, v); none without plans.

@@ -201,7 +201,7 @@ const PHASES: [fn(f64) -> f64; 2] = [f64::cos, f64::sin];
 
 /// The sign of what alternates from edge to edge.
 fn sign(j: usize) -> f64 {
-    if j % 2 == 0 { 1.0 } else { -1.0 }
+    if j.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 /// The eigenvectors of the 1-ring, on the 1-ring.
@@ -229,7 +229,7 @@ fn ring_modes(valence: usize) -> Vec<Mode> {
         }
     }
     // At half the valence the two do not mix: both have the value 1/4.
-    if valence % 2 == 0 {
+    if valence.is_multiple_of(2) {
         push(0.25, 0.0, &|j| DVec2::new(sign(j), 0.0));
         push(0.25, 0.0, &|j| DVec2::new(0.0, sign(j)));
     }
@@ -252,7 +252,7 @@ fn ring_coordinates(valence: usize, values: &[f64]) -> Vec<f64> {
             found.extend((heights.inverse() * heard).to_array());
         }
     }
-    if valence % 2 == 0 {
+    if valence.is_multiple_of(2) {
         let alternating = (0..valence).map(|j| sign(j) * pair(j)).sum::<DVec2>() / n;
         found.extend(alternating.to_array());
     }

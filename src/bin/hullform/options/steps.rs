@@ -52,11 +52,7 @@ pub enum Backend {
 
 impl From<Backend> for hullform::gpu::Backend {
     fn from(backend: Backend) -> Self {
-        match backend {
-            Backend::Tessellator => hullform::gpu::Backend::Tessellator,
-            Backend::Pattern => hullform::gpu::Backend::Pattern,
-            Backend::Geometry => hullform::gpu::Backend::Geometry,
-        }
+        hullform::gpu::Backend::ALL[backend as usize]
     }
 }
 

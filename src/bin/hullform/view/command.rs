@@ -10,7 +10,6 @@ use hullform::mesh::Scheme;
 use hullform::method::METHODS;
 use hullform::tessellation::Spacing;
 
-use super::context::greatest_level;
 use super::orbit::Preset;
 use super::selection::Tool;
 use super::viewer::{Beside, ErrorKind, Intent, Viewer, Wish};
@@ -311,7 +310,7 @@ impl Viewer {
                 look.shading = next(&all, look.shading);
             }
             Command::Level(by) => {
-                let most = greatest_level(cutting.backend);
+                let most = cutting.backend.greatest_level();
                 cutting.level = (cutting.level + by).round().clamp(1.0, most);
             }
             Command::Method => cutting.method = next(&methods(), cutting.method),

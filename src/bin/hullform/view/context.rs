@@ -165,7 +165,7 @@ impl Context {
             },
             ring_bytes: self.global.ring_bytes,
             slots: Slots::Host,
-            greatest_level: greatest_level(recipe.backend),
+            greatest_level: recipe.backend.greatest_level(),
             rounds: 2,
             views: 2,
             amplify_cracks: recipe.amplify,
@@ -408,14 +408,6 @@ pub fn prepare(
             Ok((prepared, Vec::new()))
         }
         None => prepare_by_default_with(model, options, database),
-    }
-}
-
-/// The greatest level that a back-end draws.
-pub fn greatest_level(backend: Backend) -> f32 {
-    match backend {
-        Backend::Geometry => 32.0,
-        Backend::Tessellator | Backend::Pattern => 64.0,
     }
 }
 

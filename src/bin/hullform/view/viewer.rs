@@ -10,7 +10,7 @@ use hullform::mesh::Scheme;
 use hullform::method::METHODS;
 use hullform::tessellation::Spacing;
 
-use super::context::{Recipe, greatest_level};
+use super::context::Recipe;
 use super::deform::Deform;
 use super::notices::Notices;
 use super::orbit::Orbit;
@@ -65,7 +65,7 @@ impl Cutting {
     /// As the library takes it.
     pub fn cut(&self) -> Cut {
         Cut {
-            level: self.level.clamp(1.0, greatest_level(self.backend)),
+            level: self.level.clamp(1.0, self.backend.greatest_level()),
             spacing: self.spacing,
         }
     }

@@ -7,7 +7,6 @@ use hullform::gpu::{Backend, Residence};
 use hullform::tessellation::Spacing;
 
 use super::super::command::{BACKENDS, Command, SCHEMES, SHADINGS, methods};
-use super::super::context::greatest_level;
 use super::super::orbit::Preset;
 use super::super::viewer::{Beside, Cull, Cutting, ErrorKind, Intent, Viewer};
 use super::{choice, heading, row};
@@ -96,13 +95,13 @@ fn cut(ui: &mut Ui, viewer: &mut Viewer) {
     let all = BACKENDS.map(|backend| (backend, backend.name().to_string()));
     choice(ui, "back-end", &mut cutting.backend, &all);
     if cutting.backend == Backend::Geometry {
-        cutting.level = cutting.level.min(greatest_level(Backend::Geometry));
+        cutting.level = cutting.level.min(Backend::Geometry.greatest_level());
     }
     let all = [Residence::Cache, Residence::Ring].map(|r| (r, r.name().to_string()));
     choice(ui, "residence", &mut cutting.residence, &all);
     let all = [Spacing::FractionalEven, Spacing::Equal].map(|s| (s, s.name().to_string()));
     choice(ui, "spacing", &mut cutting.spacing, &all);
-    let most = greatest_level(cutting.backend);
+    let most = cutting.backend.greatest_level();
     let level = row(ui, "level", |ui| {
         let slider = Slider::new(&mut cutting.level, 1.0..=most).logarithmic(true);
         // Not drawn to round numbers: levels between them are what is to be seen.

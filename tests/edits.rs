@@ -561,7 +561,7 @@ fn methods_that_cannot_edit_in_place_say_so_and_prepare_all_anew() {
         let fresh = method.prepare_with(&model, PlanOptions::default(), &database);
         let fresh = fresh.expect("it draws the model");
         assert!(editable.prepared().is_of(&model));
-        let [own, right] = [editable.prepared(), &fresh].map(places);
+        let [own, right] = [editable.prepared(), &fresh].map(all_places);
         assert_eq!(own.iter().flatten().count(), right.iter().flatten().count());
     }
 }

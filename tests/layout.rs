@@ -65,6 +65,7 @@ fn in_tables(shape: &Shape) -> Option<&'static str> {
         "Ends",
         "TableFace",
         "TablePlace",
+        "Eigenbasis",
     ];
     let size = |name: &str| abi::LAYOUTS.iter().find(|(own, _, _)| *own == name);
     let found = names.into_iter().find(|name| {

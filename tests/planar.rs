@@ -63,7 +63,8 @@ fn hold(place: &str, planar: &Planar, angle: f64, bound: f64, failures: &mut Vec
 }
 
 /// The degrees by which f32 leaves a normal open: a position of about the model's size is rounded by half of f32's epsilon, and a derivative turns by that
-/// over its own length; beside one that is nearly parallel by that over the sine between them.
+/// over its own length; beside one that is nearly parallel by that over the sine between them. Derivatives of a piece are as much shorter as the piece is, and
+/// its points were rounded at each level.
 fn left_by_rounding(model: &Model, patch: &abi::Patch, uv: [f64; 2]) -> f64 {
     let [u, v] = to_ptex(patch, uv.map(|x| x as f32)).map(f64::from);
     let truth = LimitSurface::new(model.mesh());
@@ -71,6 +72,10 @@ fn left_by_rounding(model: &Model, patch: &abi::Patch, uv: [f64; 2]) -> f64 {
     let sample = sample.expect("patches are no holes");
     let [du, dv] = [sample.du, sample.dv].map(|d| d / model.placement().scale);
     let height = du.cross(dv).length() / du.length().max(dv.length());
+    if patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE {
+        let depth = f64::from(patch.plan >> abi::PIECE_DEPTH_SHIFT);
+        return (f64::from(f32::EPSILON) * (1.0 + depth) * depth.exp2() / height).to_degrees();
+    }
     // Above that it is less than 1e-3 degrees even if all errors add up.
     match height < 0.01 {
         true => (f64::from(f32::EPSILON) / height).to_degrees(),

@@ -289,7 +289,7 @@ proptest! {
         }
     }
 
-    /// One patch a quad, or four where the method refines first, and one a corner of an n-gon; none a hole.
+    /// One patch a quad, or four or as many pieces as it takes where the method refines first, and one a corner of an n-gon; none a hole.
     #[test]
     fn every_method_makes_patches_of_each_ptex_face_that_is_no_hole(recipe in manifold()) {
         let model = Model::new(recipe.mesh());
@@ -299,13 +299,17 @@ proptest! {
         let expected: Vec<u32> = expected.collect();
         for method in able(&model) {
             let prepared = method.prepare(&model, PlanOptions::default()).expect("sound options");
-            let patches = prepared.passes.iter().flat_map(|pass| &pass.patches);
-            // Of the children of a face the first stands for all.
-            let child = |patch: &&abi::Patch| patch.flags >> abi::PATCH_CHILD_SHIFT & 15;
-            let patches = patches.filter(|patch| child(patch) <= abi::CHILD_OF_QUAD);
-            let mut found: Vec<u32> = patches.map(|patch| patch.ptex).collect();
-            found.sort_unstable();
-            prop_assert_eq!(&found, &expected, "{}", method.name);
+            // The share of each ptex face that is drawn.
+            let mut found = std::collections::BTreeMap::new();
+            for patch in prepared.passes.iter().flat_map(|pass| &pass.patches) {
+                *found.entry(patch.ptex).or_default() += match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
+                    0 => 1.0,
+                    abi::CHILD_PIECE => 0.25f64.powi((patch.plan >> abi::PIECE_DEPTH_SHIFT) as i32),
+                    _ => 0.25,
+                };
+            }
+            let whole = expected.iter().map(|&ptex| (ptex, 1.0)).collect();
+            prop_assert_eq!(&found, &whole, "{}", method.name);
         }
     }
 }
@@ -468,7 +472,11 @@ fn patches_of_n_gons_are_marked_as_halves_and_their_neighbours_edges_as_even() {
             .prepare(&model, PlanOptions::default())
             .expect("sound options");
         let offsets = model.mesh().ptex_offsets();
-        for patch in prepared.passes.iter().flat_map(|pass| &pass.patches) {
+        let patches = prepared.passes.iter().flat_map(|pass| &pass.patches);
+        // Edges of pieces are as the levels on both sides want them, see `method/fas/tests.rs`.
+        let is_piece =
+            |patch: &&abi::Patch| patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE;
+        for patch in patches.filter(|patch| !is_piece(patch)) {
             let face = offsets.partition_point(|&first| first <= patch.ptex) as u32 - 1;
             let quad = model.topology().face(face).len() == 4;
             assert_eq!(patch.flags & abi::PATCH_HALF == 0, quad);

@@ -182,13 +182,16 @@ fn tangents_are_derivatives_of_what_is_drawn() {
                 let slopes = [Vec2::X, Vec2::Y].map(slope);
                 let right = in_ptex(&pass.patches[patch], slopes);
                 let least = 1e-2 * (right[0].length() + right[1].length()).max(1e-2);
+                // Positions are rounded, and of small pieces differences are small.
+                let piece = in_ptex(&pass.patches[patch], [DVec3::X, DVec3::Y]);
+                let rounding = f64::from(f32::EPSILON / STEP) * piece[0].length();
                 for (own, right) in own.into_iter().zip(right) {
                     if method.name == "acc" {
                         continue;
                     }
                     let off = apart(own, right, least);
                     assert!(
-                        off < 2e-2,
+                        off < 2e-2 || own.as_dvec3().distance(right) < 2.0 * rounding,
                         "{name}, {} {patch} at {uv}: {own} is {right}",
                         pass.shader
                     );

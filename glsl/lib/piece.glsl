@@ -47,7 +47,14 @@ vec2 nearby(Patch record, vec2 uv) {
     return inside;
 }
 
-vec3 sure_normal(vec3 own, vec3 beside) { return beside == vec3(0.0) || are_near(own, beside) ? own : beside; }
+// Or if rounding may have made it.
+vec3 sure_normal(Surface own, vec3 beside) {
+    if (beside == vec3(0.0)) return surface_normal(own);
+    float greatest = 0.0;
+    for (uint i = 0u; i < 16u; ++i) greatest = max(greatest, reach(in_point[i]));
+    precise vec2 errors = vec2((16.0 * ROUNDING) * greatest);
+    return are_near(clear_normal(Tangents(own.du, own.dv, errors)), beside) ? surface_normal(own) : beside;
+}
 #endif
 
 #ifdef STAGE_FRAGMENT

@@ -22,9 +22,10 @@ Surface surface_at(Patch record, vec2 uv) {
 }
 
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
-    Point own = surface_point(surface_at(record, uv));
+    Surface surface = surface_at(record, uv);
+    Point own = surface_point(surface);
 #ifdef NEARBY_NORMALS
-    if (is_unsure(record, uv)) own.normal = sure_normal(own.normal, surface_normal(surface_at(record, nearby(record, uv))));
+    if (is_unsure(record, uv)) own.normal = sure_normal(surface, surface_normal(surface_at(record, nearby(record, uv))));
 #endif
     return own;
 }

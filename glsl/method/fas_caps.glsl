@@ -13,8 +13,9 @@ const uint INNER = 12u;
 #ifdef STAGE_EVALUATION
 Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Inner inner = Inner(in_point[INNER], in_point[INNER + 1u], in_point[INNER + 2u], in_point[INNER + 3u]);
-    Point own = surface_point(bicubic(inner, uv));
-    if (is_unsure(record, uv)) own.normal = sure_normal(own.normal, surface_normal(bicubic(inner, nearby(record, uv))));
+    Surface surface = bicubic(inner, uv);
+    Point own = surface_point(surface);
+    if (is_unsure(record, uv)) own.normal = sure_normal(surface, surface_normal(bicubic(inner, nearby(record, uv))));
     return own;
 }
 #endif

@@ -116,10 +116,12 @@ pub fn work(
 
 fn find_out(context: &Context, registry: &Registry, name: &str) -> Finding {
     if name == DEVICE {
-        return match (context.device(), context.unsuitable()) {
-            (Ok(device), _) => Finding::pass(Opened::of(device.info()).line()),
-            (Err(_), Ok(Some(info))) => Finding::skip(Opened::of(&info).line()),
-            (Err(error), _) => Finding::fail(error.to_string()),
+        return match context.device() {
+            Ok(device) => Finding::pass(Opened::of(device.info()).line()),
+            Err(error) => match context.unsuitable() {
+                Ok(Some(info)) => Finding::skip(Opened::of(&info).line()),
+                _ => Finding::fail(error.to_string()),
+            },
         };
     }
     registry.find(name).map_or_else(

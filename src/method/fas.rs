@@ -18,7 +18,7 @@ use crate::error::{Error, Place, Result};
 use crate::mesh::{Model, Scheme};
 use crate::method::bicubic::Bicubic;
 use crate::method::spline::{bspline, creased};
-use crate::method::surface::{Controls, Surface, SurfacePoint, Tangents};
+use crate::method::surface::{Controls, Surface, SurfacePoint, Tangents, UNIT, reach};
 use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::plan::Database;
 use crate::tessellation::Domain;
@@ -94,7 +94,13 @@ fn points(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 16] {
 }
 
 fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    point(&pass.patches[patch], uv, spline_surface(pass, given, patch))
+    let points = points(pass, given, patch);
+    point(
+        &pass.patches[patch],
+        uv,
+        &points,
+        spline_surface(pass, given, patch),
+    )
 }
 
 fn spline_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
@@ -120,9 +126,15 @@ fn spline_surface(pass: &Pass, given: &Controls, patch: usize) -> impl Fn(Vec2) 
 }
 
 /// A point of a surface. At the corner of a single face, and at a cusp, the normal counts only if that at (1/64, 1/64) of the ptex face from there is like
-/// it, as the truth has it (`subdivision/normals.rs`).
-fn point(patch: &abi::Patch, uv: Vec2, surface: impl Fn(Vec2) -> Surface) -> SurfacePoint {
-    let own = surface(uv).point();
+/// it, as the truth has it (`subdivision/normals.rs`), and if it is not what rounding made of tangents that cancel.
+fn point(
+    patch: &abi::Patch,
+    uv: Vec2,
+    points: &[Vec3; 16],
+    surface: impl Fn(Vec2) -> Surface,
+) -> SurfacePoint {
+    let found = surface(uv);
+    let own = found.point();
     let corner = match uv.to_array() {
         [0.0, 0.0] => 0,
         [1.0, 0.0] => 1,
@@ -135,7 +147,12 @@ fn point(patch: &abi::Patch, uv: Vec2, surface: impl Fn(Vec2) -> Surface) -> Sur
     }
     let away = (1u32 << (patch.plan >> abi::PIECE_DEPTH_SHIFT)) as f32 / 64.0;
     let nearby = surface(uv + away * (1.0 - 2.0 * uv)).normal();
-    if nearby == Vec3::ZERO || Tangents::are_near(own.normal, nearby) {
+    let greatest = points.iter().copied().map(reach).fold(0.0, f32::max);
+    let tangents = Tangents {
+        sums: [found.du, found.dv],
+        errors: [16.0 * UNIT * greatest; 2],
+    };
+    if nearby == Vec3::ZERO || Tangents::are_near(tangents.normal(), nearby) {
         return own;
     }
     SurfacePoint {
@@ -145,8 +162,8 @@ fn point(patch: &abi::Patch, uv: Vec2, surface: impl Fn(Vec2) -> Surface) -> Sur
 }
 
 fn cap(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    let bicubic = bicubic(pass, given, patch);
-    point(&pass.patches[patch], uv, |uv| bicubic.surface(uv))
+    let (points, bicubic) = (points(pass, given, patch), bicubic(pass, given, patch));
+    point(&pass.patches[patch], uv, &points, |uv| bicubic.surface(uv))
 }
 
 fn cap_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {

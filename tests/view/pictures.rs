@@ -24,7 +24,10 @@ const LEGEND: u32 = 60;
 const WALKS: [(&str, &str); 4] = [
     ("builtin:hull", "a k ka kac ka"),
     ("builtin:ngons", "c mb c o bc brc lc zc ac w"),
-    ("builtin:cube", "w wmmmc bc rc lc mb c kc mb oc mb c mzc mc"),
+    (
+        "builtin:cube",
+        "w wmmmc bc rc lc mb c kc mb oc mb c mzc mc mc mc",
+    ),
     ("builtin:hull", "MM mmc bc bc oc rc c"),
 ];
 

@@ -152,7 +152,7 @@ fn refuses_and_keeps_the_picture(session: &Session) {
         "the last picture stays"
     );
     // Of the methods between all but one refuse creases.
-    (0..5).for_each(|_| session.press('m'));
+    (0..6).for_each(|_| session.press('m'));
     session.until("curved faces", |state| {
         state["models"][0]["methods"][0] == "pn"
     });

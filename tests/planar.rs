@@ -4,7 +4,7 @@
 mod common;
 
 use common::planar::{Planar, planar};
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use hullform::abi;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{METHODS, MethodOptions, to_ptex};
@@ -64,18 +64,19 @@ fn hold(place: &str, planar: &Planar, angle: f64, bound: f64, failures: &mut Vec
 
 /// The degrees by which f32 leaves a normal open: a position of about the model's size is rounded by half of f32's epsilon, and a derivative turns by that
 /// over its own length; beside one that is nearly parallel by that over the sine between them. Derivatives of a piece are as much shorter as the piece is, and
-/// its points were rounded at each level.
-fn left_by_rounding(model: &Model, patch: &abi::Patch, uv: [f64; 2]) -> f64 {
+/// its points were rounded at each level; those of an end cap are its own.
+fn left_by_rounding(model: &Model, patch: &abi::Patch, uv: [f64; 2], own: [Vec3; 2]) -> f64 {
+    let height = |[du, dv]: [DVec3; 2]| du.cross(dv).length() / du.length().max(dv.length());
+    if patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE {
+        let depth = f64::from(patch.plan >> abi::PIECE_DEPTH_SHIFT);
+        let rounding = f64::from(f32::EPSILON) * (1.0 + depth) * depth.exp2();
+        return (rounding / height(own.map(|d| d.as_dvec3()))).to_degrees();
+    }
     let [u, v] = to_ptex(patch, uv.map(|x| x as f32)).map(f64::from);
     let truth = LimitSurface::new(model.mesh());
     let sample = truth.evaluate(patch.ptex as usize, u, v);
     let sample = sample.expect("patches are no holes");
-    let [du, dv] = [sample.du, sample.dv].map(|d| d / model.placement().scale);
-    let height = du.cross(dv).length() / du.length().max(dv.length());
-    if patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE {
-        let depth = f64::from(patch.plan >> abi::PIECE_DEPTH_SHIFT);
-        return (f64::from(f32::EPSILON) * (1.0 + depth) * depth.exp2() / height).to_degrees();
-    }
+    let height = height([sample.du, sample.dv].map(|d| d / model.placement().scale));
     // Above that it is less than 1e-3 degrees even if all errors add up.
     match height < 0.01 {
         true => (f64::from(f32::EPSILON) / height).to_degrees(),
@@ -160,7 +161,9 @@ fn every_method_draws_a_planar_mesh_with_the_planes_normal() {
                                 method.name, patch.ptex
                             );
                             if angle > 5e-4 {
-                                let bound = 5e-4 + left_by_rounding(&model, patch, uv);
+                                let own = pass.tangents(&controls, number, at, 64.0);
+                                let own = own.expect("all methods have tangents");
+                                let bound = 5e-4 + left_by_rounding(&model, patch, uv, own);
                                 hold(&place, &planar, angle, bound, &mut failures);
                             }
                             (worst, points) = (worst.max(angle), points + 1);

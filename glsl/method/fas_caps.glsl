@@ -15,7 +15,8 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Inner inner = Inner(in_point[INNER], in_point[INNER + 1u], in_point[INNER + 2u], in_point[INNER + 3u]);
     Surface surface = bicubic(inner, uv);
     Point own = surface_point(surface);
-    if (is_unsure(record, uv)) own.normal = sure_normal(surface, surface_normal(bicubic(inner, nearby(record, uv))));
+    bool corner = (uv.x == 0.0 || uv.x == 1.0) && (uv.y == 0.0 || uv.y == 1.0);
+    if (is_unsure(record, uv) || (corner && own.normal == vec3(0.0))) own.normal = sure_normal(surface, surface_normal(bicubic(inner, nearby(record, uv))));
     return own;
 }
 #endif

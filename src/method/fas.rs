@@ -95,12 +95,7 @@ fn points(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 16] {
 
 fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let points = points(pass, given, patch);
-    point(
-        &pass.patches[patch],
-        uv,
-        &points,
-        spline_surface(pass, given, patch),
-    )
+    point(pass, patch, uv, &points, spline_surface(pass, given, patch))
 }
 
 fn spline_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
@@ -126,9 +121,11 @@ fn spline_surface(pass: &Pass, given: &Controls, patch: usize) -> impl Fn(Vec2) 
 }
 
 /// A point of a surface. At the corner of a single face, and at a cusp, the normal counts only if that at (1/64, 1/64) of the ptex face from there is like
-/// it, as the truth has it (`subdivision/normals.rs`), and if it is not what rounding made of tangents that cancel.
+/// it, as the truth has it (`subdivision/normals.rs`), and if it is not what rounding made of tangents that cancel; at those of a cap whose tangents span no plane, that
+/// nearby stands for it.
 fn point(
-    patch: &abi::Patch,
+    pass: &Pass,
+    patch: usize,
     uv: Vec2,
     points: &[Vec3; 16],
     surface: impl Fn(Vec2) -> Surface,
@@ -142,7 +139,9 @@ fn point(
         [0.0, 1.0] => 3,
         _ => return own,
     };
-    if patch.flags & (abi::PATCH_NEARBY_CORNER << corner) == 0 {
+    let patch = &pass.patches[patch];
+    let is_none = pass.caps && own.normal == Vec3::ZERO;
+    if patch.flags & (abi::PATCH_NEARBY_CORNER << corner) == 0 && !is_none {
         return own;
     }
     let away = (1u32 << (patch.plan >> abi::PIECE_DEPTH_SHIFT)) as f32 / 64.0;
@@ -163,7 +162,7 @@ fn point(
 
 fn cap(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let (points, bicubic) = (points(pass, given, patch), bicubic(pass, given, patch));
-    point(&pass.patches[patch], uv, &points, |uv| bicubic.surface(uv))
+    point(pass, patch, uv, &points, |uv| bicubic.surface(uv))
 }
 
 fn cap_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {

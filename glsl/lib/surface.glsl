@@ -24,7 +24,7 @@ vec3 surface_normal(Surface surface) {
 }
 
 #ifdef STAGE_EVALUATION
-// Whether a fragment shader asks for tangents: a constant of the pipeline, so that who does not ask pays nothing. Geometry shaders have no components to
+// Whether a fragment shader asks for tangents: a constant of the pipeline, so that who does not ask runs no code for them. Geometry shaders have no components to
 // spare for them, and those that have are modules of their own.
 #ifndef STAGE_GEOMETRY
 layout(constant_id = 1) const bool TANGENTS = false;

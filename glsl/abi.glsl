@@ -76,6 +76,16 @@ const uint PRODUCTS_A_WORD = 16u;
 const uint NO_TANGENTS = 4294967295u;
 // How often a patch is halved towards an extraordinary vertex before it is taken for that: tess coordinates are whole steps of 2^-16.
 const uint EIGEN_LEVELS = 17u;
+// Among the numbers of a patch at an extraordinary vertex: the point of that vertex' limit.
+const uint EIGEN_LIMIT = 0u;
+// Behind it: before the point of the patch's second eigenvector.
+const uint EIGEN_VECTORS = 1u;
+// Behind it: the same of the next face around the vertex, or `EIGEN_HOLE`.
+const uint EIGEN_NEXT = 2u;
+// Behind it: the sixteen points around the face, number x + 4 y.
+const uint EIGEN_GRID = 3u;
+// Instead of the next face's: it is a hole.
+const uint EIGEN_HOLE = 4294967295u;
 // Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
 const uint USE_FLIPPED = 1u;
 // Use flag: the patch has the first half of the edge.

@@ -20,15 +20,7 @@ vec3 patch_point(Patch record, uint number) { return vec3(0.0); }
 #endif
 
 #ifdef STAGE_EVALUATION
-// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex, unless that
-// is a hole; then the grid of vertices around it.
-const uint LIMIT = 0u;
-const uint VECTORS = 1u;
-const uint NEXT_VECTORS = 2u;
-const uint GRID = 3u;
-const uint HOLE = 0xffffffffu;
-
-vec3 grid_point(Patch record, uint i) { return patch_control(record, GRID + i).position; }
+vec3 grid_point(Patch record, uint i) { return patch_control(record, EIGEN_GRID + i).position; }
 
 #define REGULAR_POINT(i) grid_point(record, i)
 #define REGULAR_PICK(turned, i, j) grid_point(record, turned ? j : i)
@@ -63,7 +55,7 @@ Surface eigen_surface(Patch record, uint vectors, vec2 uv) {
     Eigenbasis basis = eigenbases[bases.own[0] + record.plan];
     uint first = bases.own[1] + basis.coefficients + 16u * (piece * basis.count);
     uint power = bases.own[1] + basis.powers + level * basis.count;
-    precise vec3 position = patch_control(record, LIMIT).position;
+    precise vec3 position = patch_control(record, EIGEN_LIMIT).position;
     precise vec3 du = vec3(0.0);
     precise vec3 dv = vec3(0.0);
     for (uint i = 1u; i < basis.count; ++i) {
@@ -91,8 +83,8 @@ Surface eigen_surface(Patch record, uint vectors, vec2 uv) {
 // v runs against this one's u.
 Surface surface_at(Patch record, vec2 uv) {
     if (uv.x >= 1.0 || uv.y >= 1.0) return regular_surface(record, uv);
-    bool next = uv.x <= 0.0 && control_at(record.controls + NEXT_VECTORS) != HOLE;
-    uint vectors = control_at(record.controls + (next ? NEXT_VECTORS : VECTORS));
+    bool next = uv.x <= 0.0 && control_at(record.controls + EIGEN_NEXT) != EIGEN_HOLE;
+    uint vectors = control_at(record.controls + (next ? EIGEN_NEXT : EIGEN_VECTORS));
     Surface surface = eigen_surface(record, vectors, next ? uv.yx : uv);
     return next ? Surface(surface.position, -surface.dv, surface.du) : surface;
 }
@@ -104,7 +96,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
             float nearest = power_of_two(-int(tangent_level));
             keep_tangents(surface_at(record, vec2(nearest, 0.0)).du, surface_at(record, vec2(0.0, nearest)).dv);
         }
-        return patch_control(record, LIMIT);
+        return patch_control(record, EIGEN_LIMIT);
     }
     return surface_point(surface_at(record, uv));
 }

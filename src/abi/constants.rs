@@ -74,6 +74,16 @@ constants! {
     NO_TANGENTS = 0xffff_ffff;
     /// How often a patch is halved towards an extraordinary vertex before it is taken for that: tess coordinates are whole steps of 2^-16.
     EIGEN_LEVELS = 17;
+    /// Among the numbers of a patch at an extraordinary vertex: the point of that vertex' limit.
+    EIGEN_LIMIT = 0;
+    /// Behind it: before the point of the patch's second eigenvector.
+    EIGEN_VECTORS = 1;
+    /// Behind it: the same of the next face around the vertex, or `EIGEN_HOLE`.
+    EIGEN_NEXT = 2;
+    /// Behind it: the sixteen points around the face, number x + 4 y.
+    EIGEN_GRID = 3;
+    /// Instead of the next face's: it is a hole.
+    EIGEN_HOLE = 0xffff_ffff;
     /// Use flag: the edge runs against the patch's own direction, which is counter-clockwise.
     USE_FLIPPED = 1;
     /// Use flag: the patch has the first half of the edge.

@@ -228,8 +228,9 @@ impl Builder<'_> {
             patch.plan = self.bases.number(valence);
             let next = self.smooth.around(4 * face.number + turn) / 4;
             let controls = &mut self.irregular.controls;
+            // In the order of `EIGEN_LIMIT`, `EIGEN_VECTORS`, `EIGEN_NEXT`, `EIGEN_GRID`.
             controls.push(self.limits[&vertices[0]]);
-            let vectors = |face: u32| self.vectors.get(&face).copied().unwrap_or(HOLE);
+            let vectors = |face: u32| self.vectors.get(&face).copied().unwrap_or(abi::EIGEN_HOLE);
             controls.extend([face.number, next].map(vectors));
             // Where there is no vertex, none counts on the edges that the grid is for.
             let grid = (0..16).map(|i| [i % 4 - 1, i / 4 - 1]);
@@ -243,14 +244,6 @@ impl Builder<'_> {
         pass.patches.push(patch);
     }
 }
-
-/// A patch's numbers: the limit of its extraordinary vertex, where the points of its own vectors begin, and those of the next face around the vertex, unless that
-/// is a hole; then the grid of vertices around it.
-const LIMIT: usize = 0;
-const VECTORS: usize = 1;
-const NEXT_VECTORS: usize = 2;
-const GRID: usize = 3;
-const HOLE: u32 = u32::MAX;
 
 fn regular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     on_grid_of(pass, given, patch, 0, uv).point()
@@ -272,7 +265,7 @@ fn on_grid_of(pass: &Pass, given: &Controls, patch: usize, first: usize, uv: Vec
 fn irregular(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let record = &pass.patches[patch];
     if uv == Vec2::ZERO {
-        let limit = pass.controls[record.controls as usize + LIMIT];
+        let limit = pass.controls[record.controls as usize + abi::EIGEN_LIMIT as usize];
         let limit = given.points[limit as usize];
         return SurfacePoint {
             position: limit.position.into(),
@@ -302,15 +295,19 @@ fn irregular_tangents(
 /// Away from the extraordinary vertex itself.
 fn irregular_surface(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> Surface {
     if uv.max_element() >= 1.0 {
-        return on_grid_of(pass, given, patch, GRID, uv);
+        return on_grid_of(pass, given, patch, abi::EIGEN_GRID as usize, uv);
     }
     let record = &pass.patches[patch];
-    let number = |place: usize| pass.controls[record.controls as usize + place];
+    let number = |place: u32| pass.controls[(record.controls + place) as usize];
     let position = |number: u32| Vec3::from(given.points[number as usize].position);
-    let next = uv.x <= 0.0 && number(NEXT_VECTORS) != HOLE;
-    let vectors = number(if next { NEXT_VECTORS } else { VECTORS });
+    let next = uv.x <= 0.0 && number(abi::EIGEN_NEXT) != abi::EIGEN_HOLE;
+    let vectors = number(if next {
+        abi::EIGEN_NEXT
+    } else {
+        abi::EIGEN_VECTORS
+    });
     let own = if next { Vec2::new(uv.y, uv.x) } else { uv };
-    let limit = position(number(LIMIT));
+    let limit = position(number(abi::EIGEN_LIMIT));
     let point = |vector: u32| position(vectors + vector);
     let surface = eigen_surface(pass, record.plan, own, limit, point);
     if !next {

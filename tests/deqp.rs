@@ -373,10 +373,9 @@ fn a_run_that_was_killed_goes_on_where_it_was() {
 fn deqp_runner_finds_in_the_whole_suite_what_verify_finds() {
     let runs = std::env::var("HULLFORM_DEQP").ok();
     let runs: u32 = runs.and_then(|runs| runs.parse().ok()).unwrap_or(0);
+    assert!(runs == 0 || has_runner(), "it was asked for");
     for _ in 0..runs {
-        if has_runner() {
-            under_runner("*", None);
-        }
+        under_runner("*", None);
     }
 }
 

@@ -7,17 +7,18 @@ use rustc_hash::FxHashMap;
 use crate::error::{Error, Result};
 use crate::mesh::topology::Topology;
 use crate::plan::base::{Bases, UNUSED};
-use crate::plan::configuration::Configuration;
+use crate::plan::configuration::{Configuration, Ring};
 use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
+use crate::plan::quarter::{Leaf, Quarter};
 use crate::plan::required::{require, require_stretch};
 use crate::plan::rows::Rows;
 use crate::plan::span::Span;
 use crate::plan::stencil_rows::StencilRows;
 use crate::plan::stencils::Stencils;
 use crate::plan::strip::{self, Strip};
-use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::{BsplinePatch, ControlPoint, is_plain_edge, limit_stencil};
+use crate::plan::tree::{Node, Tree};
+use crate::subdivision::{ControlPoint, Mask, is_plain_edge};
 
 /// How plans are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -96,8 +97,9 @@ impl Plan {
     ) -> Result<Plan> {
         let options = options.check()?;
         configuration.check_corners(configuration.arity())?;
-        let base = Level::base(configuration, steps);
-        let nearby = nearby::tangents(configuration, &base);
+        let whole = Level::whole(configuration, steps);
+        let base = whole.base();
+        let nearby = nearby::tangents(&whole, &base);
         let bases = Bases::new(4);
         let mut builder = Builder {
             options,
@@ -107,7 +109,7 @@ impl Plan {
             edges: shared_edges(base.topology(), configuration),
             halves: Vec::new(),
         };
-        let tree = builder.grow(&base).fold();
+        let tree = builder.grow(&base, steps).fold();
         let Builder {
             mut rows,
             mut bases,
@@ -137,7 +139,7 @@ impl Plan {
             require_stretch(stretch, options.max_level, &mut levels);
         }
         for corner in bases.used() {
-            bases.found(corner, &limit_row(&base, corner));
+            bases.found(corner, &limit_row(&base, corner, steps));
         }
         bases.apply(&mut rows, &mut levels);
         let corners = bases.of_rows();
@@ -158,40 +160,19 @@ fn shared_edges(topology: &Topology, configuration: &Configuration) -> Vec<u32> 
     all.filter(is_shared).collect()
 }
 
-/// The weights of a corner's limit.
-fn limit_row(base: &Level<'_>, corner: u32) -> Vec<f64> {
-    let mut level = base.clone();
-    loop {
-        if let Some(limit) = limit_stencil(level.topology(), 0, corner) {
-            let mut rows = Rows::zero(level.rows.width(), 0);
-            rows.push(|row| level.rows.add_to(row, &limit.position));
-            return rows.row(0).to_vec();
-        }
-        level = level.refined(&[(0, corner)]);
-    }
-}
-
-/// A cell that waits to be turned into a leaf or four cells.
-#[derive(Clone, Copy)]
-struct Cell {
-    /// The corner of the face that it touches, if any; the face itself touches all four.
-    corner: Option<u32>,
-    /// The corner of the face that the limit is taken at which its points are relative to; none for the face itself.
-    base: Option<u32>,
-}
-
-/// What became of a cell at its level.
-enum Grown {
-    Leaf(Node),
-    /// Four cells of the next level, from this number on.
-    Children(usize),
-}
-
-/// A cell that needs no children.
-#[derive(Clone, Copy)]
-enum Leaf<'a> {
-    Spline(&'a BsplinePatch),
-    Extraordinary(u32),
+/// The weights of a corner's limit: from the vertex alone, so that all faces around have the same.
+fn limit_row(base: &Level<'_>, corner: u32, steps: &Steps) -> Vec<f64> {
+    let vertex = base.topology().face(0)[corner as usize];
+    let ring = Ring::of_vertex(base.topology(), vertex).expect("the face has the vertex");
+    let limit = steps.limit(ring.configuration);
+    let mask: Mask = ring
+        .vertices
+        .into_iter()
+        .zip(limit.iter().copied())
+        .collect();
+    let mut row = vec![0.0; base.rows.width()];
+    base.rows.add_to(&mut row, &mask);
+    row
 }
 
 struct Builder {
@@ -215,97 +196,38 @@ struct Half {
     base: u32,
 }
 
-/// After one level every cell touches a corner of the face; the coordinates of tess level 2 need cells that do not.
-pub(super) const SHALLOWEST: u32 = 2;
-
-/// Semi-sharp features are gone after ten levels; a cell inside a face is a B-spline then.
-pub(super) const DEEPEST: u32 = 11;
-
 impl Builder {
-    /// Refines level by level until every cell is a leaf, then joins the levels to a tree.
-    fn grow(&mut self, base: &Level<'_>) -> Tree {
-        let mut grown: Vec<Vec<Grown>> = Vec::new();
-        let mut cells = vec![Cell {
-            corner: None,
-            base: None,
-        }];
-        let mut level = base.clone();
-        for depth in 0.. {
-            self.numbers.clear();
-            let leaves: Vec<Option<Leaf<'_>>> = (0..)
-                .zip(&cells)
-                .map(|(number, cell)| self.leaf(&level, number, cell.corner, depth))
-                .collect();
-            if depth == 1 {
-                rebase(&mut cells, &leaves);
-                self.halves = self.halves(&level, &cells, &leaves);
-            }
-            let mut next = Vec::new();
-            let mut parents = Vec::new();
-            let mut row = Vec::with_capacity(cells.len());
-            for ((number, &cell), leaf) in (0..).zip(&cells).zip(leaves) {
-                let leaf = leaf.map(|leaf| self.node(&level, leaf, cell.base));
-                row.push(leaf.map_or(Grown::Children(next.len()), Grown::Leaf));
-                if let Grown::Children(_) = row[row.len() - 1] {
-                    next.extend((0..4).map(|corner| Cell {
-                        corner: (depth == 0 || cell.corner == Some(corner)).then_some(corner),
-                        base: cell.base.or(Some(corner)),
-                    }));
-                    parents.extend((0..4).map(|corner| (number, corner)));
+    /// The face as one leaf, or as its quarters.
+    fn grow(&mut self, base: &Level<'_>, steps: &Steps) -> Tree {
+        if let Some(leaf) = Leaf::of(base, 0, None, 0, self.options) {
+            return Tree::Leaf(leaf.node(None, |point| self.point(base, point, None)));
+        }
+        let level = base.refined(&[(0, 0), (0, 1), (0, 2), (0, 3)]);
+        let leaves =
+            [0, 1, 2, 3].map(|corner| Leaf::of(&level, corner, Some(corner), 1, self.options));
+        let bases = bases(&leaves);
+        self.numbers.clear();
+        self.halves = self.halves(&level, &bases, &leaves);
+        Tree::of_corners([0, 1, 2, 3].map(|corner| {
+            let base = bases[corner as usize];
+            match leaves[corner as usize] {
+                Some(leaf) => {
+                    Tree::Leaf(leaf.node(Some(base), |point| self.point(&level, point, Some(base))))
                 }
+                None => self.quarter(&level, corner, steps),
             }
-            grown.push(row);
-            if next.is_empty() {
-                break;
-            }
-            level = level.refined(&parents);
-            cells = next;
-        }
-        join(&grown, 0, 0)
+        }))
     }
 
-    /// The cell as a leaf, or None when it must be refined.
-    fn leaf<'a>(
-        &self,
-        level: &'a Level<'_>,
-        number: u32,
-        corner: Option<u32>,
-        depth: u32,
-    ) -> Option<Leaf<'a>> {
-        let last = depth >= self.options.max_level.max(SHALLOWEST);
-        let direct = self.options.direct_creases || last;
-        match (level.patch(number), corner) {
-            (Some(patch), _) if patch.crease.is_none() || direct => Some(Leaf::Spline(patch)),
-            (_, Some(corner)) if last => Some(Leaf::Extraordinary(corner)),
-            _ => {
-                assert!(
-                    depth < DEEPEST,
-                    "a cell inside a face is a B-spline once no semi-sharp crease is left"
-                );
-                None
-            }
+    /// What is below a quarter. Its points are relative to the limit at its corner.
+    fn quarter(&mut self, level: &Level<'_>, corner: u32, steps: &Steps) -> Tree {
+        let (quarter, placed) = Quarter::of(level, corner, self.options, steps);
+        let first = self.rows.len() as u32;
+        for mask in quarter.masks(&placed) {
+            self.rows.push(|row| level.rows.add_to(row, &mask));
+            self.bases.pushed(Some(corner));
         }
-    }
-
-    fn node(&mut self, level: &Level<'_>, leaf: Leaf<'_>, base: Option<u32>) -> Node {
-        let patch = match leaf {
-            Leaf::Spline(patch) => patch,
-            Leaf::Extraordinary(corner) => return Node::Extraordinary { corner },
-        };
-        let points = self.points(level, patch, base);
-        match patch.crease {
-            None => Node::Regular {
-                points,
-                mirrored: patch.mirrored,
-                base,
-            },
-            Some((edge, sharpness)) => Node::Crease {
-                points,
-                edge,
-                sharpness,
-                base,
-            },
-        }
+        quarter.tree(&placed, first)
     }
 
     /// The halves of edges that need points of their own, so that both sides of an edge can evaluate it alike: what a half's points are relative to is up
@@ -314,8 +236,8 @@ impl Builder {
     fn halves(
         &mut self,
         level: &Level<'_>,
-        quarters: &[Cell],
-        leaves: &[Option<Leaf<'_>>],
+        bases: &[u32; 4],
+        leaves: &[Option<Leaf<'_>>; 4],
     ) -> Vec<Half> {
         let mut found = Vec::new();
         let edges = self.edges.clone();
@@ -326,7 +248,7 @@ impl Builder {
             };
             let is_spline = matches!(leaves[other as usize], Some(Leaf::Spline(_)));
             let base = if is_spline { own } else { other };
-            if quarters[own as usize].base == Some(base) {
+            if bases[own as usize] == base {
                 continue;
             }
             let rows = strip::rows(&patch.points, edge);
@@ -341,10 +263,6 @@ impl Builder {
         found
     }
 
-    fn points(&mut self, level: &Level<'_>, patch: &BsplinePatch, base: Option<u32>) -> [u32; 16] {
-        patch.points.map(|point| self.point(level, point, base))
-    }
-
     fn point(&mut self, level: &Level<'_>, point: ControlPoint, base: Option<u32>) -> u32 {
         *self.numbers.entry((base, point)).or_insert_with(|| {
             self.rows.push(|row| level.rows.add_to(row, &point.mask()));
@@ -354,34 +272,16 @@ impl Builder {
     }
 }
 
-/// The points of a quarter that is a leaf are relative to the limit at a corner whose quarter is none, where there is one: beside its own, so that they are among
-/// the points of its star; else opposite to it. Around a single extraordinary vertex they are those of a terminal node.
-fn rebase(quarters: &mut [Cell], leaves: &[Option<Leaf<'_>>]) {
+/// The corners at whose limits the quarters' points are relative to: their own; those of a quarter that is a leaf to that of a corner whose quarter is none,
+/// where there is one: beside its own, so that they are among the points of its star; else opposite to it. Around a single extraordinary vertex they are those of
+/// a terminal node.
+fn bases(leaves: &[Option<Leaf<'_>>; 4]) -> [u32; 4] {
     let is_leaf = |corner: u32| matches!(leaves[corner as usize], Some(Leaf::Spline(_)));
-    for (own, quarter) in (0..).zip(quarters) {
+    [0, 1, 2, 3].map(|own| {
         let others = [1, 3, 2].map(|turn| (own + turn) % 4);
         let star = others.into_iter().find(|&corner| !is_leaf(corner));
-        if let Some(star) = star.filter(|_| is_leaf(own)) {
-            quarter.base = Some(star);
-        }
-    }
-}
-
-/// The tree under cell `number` of level `depth`.
-fn join(grown: &[Vec<Grown>], depth: usize, number: usize) -> Tree {
-    match &grown[depth][number] {
-        Grown::Leaf(node) => Tree::Leaf(node.clone()),
-        Grown::Children(first) => {
-            let mut children: [Option<Tree>; 4] = Default::default();
-            for corner in 0..4 {
-                children[child_of_corner(corner as u32)] =
-                    Some(join(grown, depth + 1, first + corner));
-            }
-            Tree::Inner(Box::new(
-                children.map(|child| child.expect("four corners make four children")),
-            ))
-        }
-    }
+        star.filter(|_| is_leaf(own)).unwrap_or(own)
+    })
 }
 
 /// Weights that are less are rounding of what is none.

@@ -1,24 +1,30 @@
 //! Refinement levels with every vertex kept as a row of weights over the 1-ring.
 
+use std::borrow::Borrow;
 use std::cell::{RefCell, RefMut};
-use std::rc::Rc;
+use std::hash::Hash;
+use std::ops::Deref;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rustc_hash::FxHashMap;
 
 use crate::mesh::topology::Topology;
+use crate::plan::builder::PlanOptions;
 use crate::plan::configuration::Configuration;
+use crate::plan::quarter::Quarter;
 use crate::plan::rows::Rows;
 use crate::plan::stencil_rows::KnownRows;
 use crate::plan::sums::Sums;
 use crate::subdivision::{
-    BsplinePatch, Mask, Refinement, bspline_patch, refine, refine_edge, refine_vertex,
+    BsplinePatch, Mask, Refinement, bspline_patch, limit_stencil, refine, refine_edge,
+    refine_vertex,
 };
 
 /// A refinement level: some cells in their surroundings, each vertex a row of weights.
 #[derive(Clone)]
 pub(super) struct Level<'a> {
     steps: &'a Steps,
-    step: Rc<Step>,
+    step: Arc<Step>,
     pub rows: Sums,
 }
 
@@ -29,7 +35,7 @@ impl<'a> Level<'a> {
         Level {
             steps,
             rows: Sums::identity(topology.vertex_count()),
-            step: Rc::new(Step {
+            step: Arc::new(Step {
                 patches: vec![bspline_patch(&topology, 0)],
                 masks: Vec::new(),
                 topology,
@@ -38,12 +44,11 @@ impl<'a> Level<'a> {
     }
 
     /// The level at which the plan of a face begins: the quad itself, or the n-gon's part at its corner 0.
-    pub fn base(configuration: &Configuration, steps: &'a Steps) -> Level<'a> {
-        let base = Level::whole(configuration, steps);
-        if base.topology().face(0).len() == 4 {
-            base
+    pub fn base(&self) -> Level<'a> {
+        if self.topology().face(0).len() == 4 {
+            self.clone()
         } else {
-            base.refined(&[(0, 0)])
+            self.refined(&[(0, 0)])
         }
     }
 
@@ -98,11 +103,54 @@ impl<'a> Level<'a> {
 pub struct Steps {
     /// Whether plans get weights as shaders have them.
     pub(super) rounded: bool,
-    known: RefCell<FxHashMap<Box<[u32]>, Rc<Step>>>,
+    known: Kept<Box<[u32]>, Step>,
+    /// Quarters of faces.
+    quarters: Kept<(PlanOptions, Configuration), Quarter>,
+    /// Limits of corners, over the vertices of their rings.
+    limits: Kept<Configuration, Vec<f64>>,
     /// Memory for rows, which one plan after another uses.
     memory: RefCell<Vec<f64>>,
     /// The same for what tells rows apart.
     known_rows: RefCell<KnownRows>,
+}
+
+/// Steps for threads that build plans: what one leaves the next one goes on with.
+#[derive(Default)]
+pub(super) struct StepsPool(Mutex<Vec<Steps>>);
+
+/// Steps out of a pool, to which they go back.
+pub(super) struct Lent<'a> {
+    pool: &'a StepsPool,
+    steps: Steps,
+}
+
+impl StepsPool {
+    /// For plans with weights as shaders have them.
+    pub fn rounded(&self) -> Lent<'_> {
+        let steps = self.idle().pop();
+        Lent {
+            pool: self,
+            steps: steps.unwrap_or_else(Steps::rounded),
+        }
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<Steps>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Deref for Lent<'_> {
+    type Target = Steps;
+
+    fn deref(&self) -> &Steps {
+        &self.steps
+    }
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        self.pool.idle().push(std::mem::take(&mut self.steps));
+    }
 }
 
 /// A step: the next topology, where its vertices come from, and its cells as B-splines; no cells of edges and vertices.
@@ -153,7 +201,7 @@ impl Steps {
         kind: u32,
         chosen: impl Iterator<Item = u32>,
         refine: impl FnOnce() -> Refinement,
-    ) -> Rc<Step> {
+    ) -> Arc<Step> {
         if topology.vertex_count() > SMALL {
             return Step::new(kind, refine()).into();
         }
@@ -161,16 +209,71 @@ impl Steps {
         key.extend(chosen);
         key[1] = key.len() as u32;
         topology.write_down(&mut key);
-        if let Some(known) = self.known.borrow().get(&key[..]) {
-            return known.clone();
+        if let Some(known) = self.known.get(&key[..]) {
+            return known;
         }
-        let step = Rc::new(Step::new(kind, refine()));
-        let mut known = self.known.borrow_mut();
+        self.known.keep(key.into(), Step::new(kind, refine()))
+    }
+
+    /// What is below a quarter with these surroundings.
+    pub(super) fn quarter(&self, of: Configuration, options: PlanOptions) -> Arc<Quarter> {
+        let key = (options, of);
+        if let Some(known) = self.quarters.get(&key) {
+            return known;
+        }
+        let quarter = Quarter::grow(&key.1, options, self);
+        if quarter.is_large() {
+            return quarter.into();
+        }
+        self.quarters.keep(key, quarter)
+    }
+
+    /// The limit at the vertex whose ring it is: a weight for each vertex of the ring.
+    pub(super) fn limit(&self, of: Configuration) -> Arc<Vec<f64>> {
+        if let Some(known) = self.limits.get(&of) {
+            return known;
+        }
+        let mut level = Level::whole(&of, self);
+        let limit = loop {
+            if let Some(limit) = limit_stencil(level.topology(), 0, 0) {
+                break limit.position;
+            }
+            level = level.refined(&[(0, 0)]);
+        };
+        let mut weights = vec![0.0; level.rows.width()];
+        level.rows.add_to(&mut weights, &limit);
+        if weights.len() > SMALL {
+            return weights.into();
+        }
+        self.limits.keep(of, weights)
+    }
+}
+
+/// What was made once, up to a number of things; then it begins anew.
+struct Kept<K, V>(RefCell<FxHashMap<K, Arc<V>>>);
+
+impl<K, V> Default for Kept<K, V> {
+    fn default() -> Self {
+        Kept(RefCell::default())
+    }
+}
+
+impl<K: Eq + Hash, V> Kept<K, V> {
+    fn get<Q: Eq + Hash + ?Sized>(&self, key: &Q) -> Option<Arc<V>>
+    where
+        K: Borrow<Q>,
+    {
+        self.0.borrow().get(key).cloned()
+    }
+
+    fn keep(&self, key: K, value: V) -> Arc<V> {
+        let value = Arc::new(value);
+        let mut known = self.0.borrow_mut();
         if known.len() == MOST {
             known.clear();
         }
-        known.insert(key.into(), step.clone());
-        step
+        known.insert(key, value.clone());
+        value
     }
 }
 

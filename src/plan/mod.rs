@@ -10,6 +10,7 @@ mod lists;
 mod nearby;
 mod packed_rows;
 mod packing;
+mod quarter;
 mod required;
 mod row_pool;
 mod rows;

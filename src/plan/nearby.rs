@@ -4,7 +4,6 @@
 //! truth takes the normal at (1/64, 1/64) from the corner, on each face for itself ([`LimitSurface`](crate::subdivision::LimitSurface)), and so do plans, whatever the level.
 
 use crate::mesh::topology::Topology;
-use crate::plan::configuration::Configuration;
 use crate::plan::level::Level;
 use crate::plan::rows::Rows;
 use crate::subdivision::{TangentPlane, limit_stencil, orthonormal, tangent_plane};
@@ -12,15 +11,12 @@ use crate::subdivision::{TangentPlane, limit_stencil, orthonormal, tangent_plane
 /// So many halvings lead to a child of a face whose far corner is at (1/64, 1/64).
 const HALVINGS: u32 = 6;
 
-/// The tangents near the corners that ask for them; `base` is the quad itself or the n-gon's part at corner 0.
-pub(super) fn tangents(
-    configuration: &Configuration,
-    base: &Level<'_>,
-) -> [Option<[Vec<f64>; 2]>; 4] {
-    let topology = configuration.topology();
+/// The tangents near the corners of a face that ask for them; `base` is the quad itself or the n-gon's part at corner 0.
+pub(super) fn tangents(whole: &Level<'_>, base: &Level<'_>) -> [Option<[Vec<f64>; 2]>; 4] {
+    let topology = whole.topology();
     let quad = topology.face(0).len() == 4;
     [0, 1, 2, 3].map(|corner| {
-        let asks = (quad || corner == 0) && is_asked(&topology, corner);
+        let asks = (quad || corner == 0) && is_asked(topology, corner);
         asks.then(|| at_corner(base, corner))
     })
 }

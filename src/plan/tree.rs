@@ -154,6 +154,12 @@ pub(super) fn child_of_corner(corner: u32) -> usize {
 }
 
 impl Tree {
+    /// A cell with the four at its corners, in their order.
+    pub(super) fn of_corners([a, b, c, d]: [Tree; 4]) -> Tree {
+        // The child at corner 2 is number 3.
+        Tree::Inner(Box::new([a, b, d, c]))
+    }
+
     /// Folds inner nodes with three B-splines and one extraordinary or terminal node into terminal nodes, from the leaves up.
     pub(super) fn fold(self) -> Tree {
         let Tree::Inner(children) = self else {

@@ -1,7 +1,8 @@
 //! Whether an entry that was read can be drawn with: every number that leads somewhere leads to what is there, and every walk ends.
 
-use crate::plan::builder::{DEEPEST, Plan};
+use crate::plan::builder::Plan;
 use crate::plan::database::entry::{Entry, Key, Kind};
+use crate::plan::quarter::DEEPEST;
 use crate::plan::strip::{Crease, Strip};
 use crate::plan::tree::Node;
 

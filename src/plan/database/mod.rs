@@ -18,7 +18,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::error::{Error, Result};
 use crate::plan::builder::PlanOptions;
 use crate::plan::configuration::Configuration;
-use crate::plan::level::Steps;
+use crate::plan::level::StepsPool;
 use crate::plan::row_pool::SharedPool;
 use crate::plan::stencils::Stencils;
 
@@ -187,16 +187,17 @@ impl Database {
     /// Reads or builds plans, and keeps them.
     fn add(&self, keys: Vec<Key>) -> Result<()> {
         let mut keys = keys.into_iter();
+        let steps = StepsPool::default();
         loop {
             let some: Vec<Key> = keys.by_ref().take(AT_A_TIME).collect();
             if some.is_empty() {
                 return Ok(());
             }
-            self.add_some(some)?;
+            self.add_some(some, &steps)?;
         }
     }
 
-    fn add_some(&self, keys: Vec<Key>) -> Result<()> {
+    fn add_some(&self, keys: Vec<Key>, steps: &StepsPool) -> Result<()> {
         let under = self.under.as_deref().unwrap_or(self);
         let stored: Vec<Option<Vec<u32>>> = match &under.file {
             None => vec![None; keys.len()],
@@ -208,15 +209,18 @@ impl Database {
         let made: Result<Vec<(Entry, Option<bool>)>> = keys
             .par_iter()
             .zip(stored)
-            .map_init(Steps::rounded, |steps, (key, stored)| {
-                let read = stored.map(|stored| words::entry(&stored, key));
-                let sound = read.as_ref().map(Option::is_some);
-                let entry = match read.flatten() {
-                    Some(entry) => entry,
-                    None => key.kind.build(&key.configuration, key.options, steps)?,
-                };
-                Ok((entry, sound))
-            })
+            .map_init(
+                || steps.rounded(),
+                |steps, (key, stored)| {
+                    let read = stored.map(|stored| words::entry(&stored, key));
+                    let sound = read.as_ref().map(Option::is_some);
+                    let entry = match read.flatten() {
+                        Some(entry) => entry,
+                        None => key.kind.build(&key.configuration, key.options, steps)?,
+                    };
+                    Ok((entry, sound))
+                },
+            )
             .collect();
         let made = made?;
         if let Some(file) = &self.file {

@@ -80,12 +80,12 @@ fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Resul
     })
 }
 
-/// Refuses what devices may not be able to bind: a vertex has about nine terms.
+/// Refuses what devices may not be able to bind: a sum has about nine terms.
 fn check_size(model: &Model, level: u32) -> Result<()> {
-    let terms = 9 * size_of::<abi::PointTerm>() as u64;
+    // Those of the levels before are a third of the last, where each has three sums: of the vertex, of its limit, and of its normal.
+    let term = size_of::<abi::PointTerm>() as u64;
     let vertices = (model.topology().face_count() as u64) << (2 * level);
-    // Those of the levels before are a third of the last.
-    let bytes = terms * (vertices + vertices / 3);
+    let bytes = term * (3 * 9 * vertices + 9 * (vertices / 3));
     if bytes <= MOST_BYTES {
         return Ok(());
     }
@@ -161,15 +161,16 @@ fn finish(
     points.begin(abi::POINTS_REFINE, begin);
     for cell in cells {
         for (corner, &vertex) in (0..).zip(topology.face(cell.face)) {
-            let fan = topology.fan(cell.face, corner);
-            let known = sectors.entry((vertex, fan.faces[0]));
+            let known = sectors.entry((vertex, sector(topology, cell.face, corner)));
+            let face = known.key().1;
             known.or_insert_with(|| {
-                let limit = deep_limit(topology, Scheme::CatmullClark, cell.face, corner);
+                let corner = topology.corner_of(face, vertex);
+                let limit = deep_limit(topology, Scheme::CatmullClark, face, corner);
                 let limit = limit.expect("the face has this corner").position;
                 let number = points.count;
                 points.push(Row::Blend(&shifted(&limit, first)));
                 places.entry(vertex).or_insert(number);
-                asked.push((fan.faces[0], topology.corner_of(fan.faces[0], vertex)));
+                asked.push((face, corner));
                 number
             });
         }
@@ -201,12 +202,21 @@ fn finish(
     for cell in cells {
         let vertices = topology.face(cell.face);
         let number = |corner: u32| {
-            let fan = topology.fan(cell.face, corner);
-            sectors[&(vertices[corner as usize], fan.faces[0])]
+            let face = sector(topology, cell.face, corner);
+            sectors[&(vertices[corner as usize], face)]
         };
         let mut record = cell.record(model, topology);
         record.flags |= creased(topology, cell.face);
         cell.add(pass, model, &[0, 1, 2, 3].map(number), record);
+    }
+}
+
+/// By which face the sector around a corner is known: the same for all of its faces, where one that closes begins with the face that asks.
+fn sector(topology: &Topology, face: u32, corner: u32) -> u32 {
+    let fan = topology.fan(face, corner);
+    match fan.closed {
+        true => fan.faces.iter().copied().min().unwrap_or(face),
+        false => fan.faces[0],
     }
 }
 
@@ -289,6 +299,15 @@ mod tests {
                         .atan2(normal.dot(right.normal()));
                     turned = turned.max(degrees.to_degrees());
                 }
+            }
+            // Each vertex of the last level once, and a vertex of a cube has one normal.
+            if name == "cube" {
+                let last = prepared.points.steps.last().expect("normals").count;
+                assert_eq!(
+                    last,
+                    6 * (1 << (2 * level)) + 2,
+                    "vertices at level {level}"
+                );
             }
             println!("{name} {level}: {away:.1e}, {turned:.1} degrees");
             assert!(away < 1e-6, "{name} {level}: {away}");

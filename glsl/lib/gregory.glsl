@@ -19,6 +19,7 @@ const uint FAR = 2u * CORNERS;
 const uint INSIDE_NEAR = 3u * CORNERS;
 const uint INSIDE_FAR = 4u * CORNERS;
 
+#include "lib/blended.glsl"
 #include "lib/edge_field.glsl"
 
 #ifdef STAGE_CONTROL
@@ -57,20 +58,6 @@ vec3 patch_point(Patch record, uint number) {
 #endif
 
 #ifdef STAGE_EVALUATION
-// A mean of two inner points that differ, whose weights vanish together at a corner: there it counts for nothing.
-struct Blended {
-    vec3 mean;
-    // By b times this the mean changes with a, and by -a times this with b.
-    vec3 change;
-};
-
-Blended blended(float a, float b, vec3 before, vec3 behind) {
-    precise float whole = max(a + b, 1e-9);
-    precise vec3 mean = (a * before + b * behind) / whole;
-    precise vec3 change = (before - behind) / (whole * whole);
-    return Blended(mean, change);
-}
-
 // On edges and at corners normals are what all faces have there; `edge` is CORNERS inside. `at` is the edge's beginning or its end where the point is a corner, or CORNERS.
 Point on_border(Patch record, Surface surface, uint edge, uint at, vec2 along) {
     keep_tangents(surface.du, surface.dv);

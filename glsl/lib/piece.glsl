@@ -11,14 +11,17 @@
 #include "lib/surface.glsl"
 
 const uint CONTROL_POINTS = 1u;
+#ifndef CONTROL_VERTICES
 #define CONTROL_VERTICES 16
+#endif
 
 #ifdef STAGE_VERTEX
 // The control shader fetches points itself.
 vec3 control_point(Patch record, uint number) { return vec3(0.0); }
 #endif
 
-#ifdef STAGE_CONTROL
+// Who sums them itself says so.
+#if defined(STAGE_CONTROL) && !defined(SUMS_POINTS)
 vec3 patch_point(Patch record, uint number) { return patch_control(record, number).position; }
 #endif
 

@@ -5,7 +5,7 @@
 //!
 //! A patch has half of the tess level of its parent. Where one lies beside two of the next level its edge has twice their segments, so vertices meet;
 //! the paper cuts such patches into up to four domains instead (section 3.2), since fractional levels do not halve. What is irregular at the last level has an
-//! end cap (`fas/caps.rs`); the paper stops where the tess level is 1, and only corners, which are on the limit, are drawn of it.
+//! end cap (`fas/caps.rs`); the paper stops where the tess level is 1, and only corners, which are on the limit, are drawn of it: `IsolationOptions::level_for`.
 
 mod caps;
 mod level;
@@ -17,9 +17,10 @@ use crate::abi;
 use crate::error::{Error, Place, Result};
 use crate::mesh::{Model, Scheme};
 use crate::method::bicubic::Bicubic;
+use crate::method::blended::{Net, quad_surface};
 use crate::method::spline::{bspline, creased};
 use crate::method::surface::{Controls, Surface, SurfacePoint, Tangents, UNIT, reach};
-use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::method::{Contract, EndCaps, Method, MethodOptions, Pass, Prepared, Reproduces};
 use crate::plan::Database;
 use crate::tessellation::Domain;
 use levels::Levels;
@@ -77,25 +78,42 @@ fn check(model: &Model) -> Result<()> {
 }
 
 fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {
-    let level = options.isolation.check()?.level;
-    let [splines, cornered] = ["fas", "fas_corners"]
-        .map(|shader| Pass::new(shader, Domain::Quads, 1, spline).with_tangents(spline_tangents));
-    let caps = Pass {
+    let isolation = options.isolation.check()?;
+    let pass = |shader, twin| Pass::new(shader, Domain::Quads, 1, twin);
+    let capped = |shader, twin| Pass {
         caps: true,
-        ..Pass::new("fas_caps", Domain::Quads, 1, cap).with_tangents(cap_tangents)
+        ..pass(shader, twin)
     };
-    Ok(Levels::new(model, [splines, cornered, caps]).refine(level))
+    let [splines, cornered] =
+        ["fas", "fas_corners"].map(|shader| pass(shader, spline).with_tangents(spline_tangents));
+    let bicubic = capped("fas_caps", cap).with_tangents(cap_tangents);
+    let own = match isolation.caps {
+        // There are none beside those.
+        EndCaps::Bicubic => bicubic.clone(),
+        EndCaps::Gregory => capped("fas_gregory", gregory).with_tangents(gregory_tangents),
+        EndCaps::Legacy => capped("fas_legacy", legacy).with_tangents(legacy_tangents),
+        EndCaps::Bspline => capped("fas", spline).with_tangents(spline_tangents),
+    };
+    let passes = [splines, cornered, bicubic, own];
+    Ok(Levels::new(model, passes, isolation.caps).refine(isolation.level))
 }
 
 /// The points of a patch.
-fn points(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 16] {
+fn points<const N: usize>(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; N] {
     let controls = &pass.controls[pass.patches[patch].controls as usize..];
     std::array::from_fn(|i| given.points[controls[i] as usize].position.into())
 }
 
 fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    let points = points(pass, given, patch);
-    point(pass, patch, uv, &points, spline_surface(pass, given, patch))
+    let points: [Vec3; 16] = points(pass, given, patch);
+    let is_cap = false;
+    point(
+        pass,
+        patch,
+        uv,
+        (&points, is_cap),
+        spline_surface(pass, given, patch),
+    )
 }
 
 fn spline_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
@@ -105,7 +123,7 @@ fn spline_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32
 
 /// A B-spline patch. Behind the points stands the sharpness of the crease, if it has one.
 fn spline_surface(pass: &Pass, given: &Controls, patch: usize) -> impl Fn(Vec2) -> Surface {
-    let points = points(pass, given, patch);
+    let points: [Vec3; 16] = points(pass, given, patch);
     let abi::Patch { controls, plan, .. } = pass.patches[patch];
     let (edge, sharpness) = match plan >> abi::PIECE_CREASE_SHIFT & 7 {
         0 => (0, 0.0),
@@ -127,7 +145,7 @@ fn point(
     pass: &Pass,
     patch: usize,
     uv: Vec2,
-    points: &[Vec3; 16],
+    (points, is_cap): (&[Vec3], bool),
     surface: impl Fn(Vec2) -> Surface,
 ) -> SurfacePoint {
     let found = surface(uv);
@@ -140,7 +158,7 @@ fn point(
         _ => return own,
     };
     let patch = &pass.patches[patch];
-    let is_none = pass.caps && own.normal == Vec3::ZERO;
+    let is_none = is_cap && own.normal == Vec3::ZERO;
     if patch.flags & (abi::PATCH_NEARBY_CORNER << corner) == 0 && !is_none {
         return own;
     }
@@ -161,8 +179,9 @@ fn point(
 }
 
 fn cap(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
-    let (points, bicubic) = (points(pass, given, patch), bicubic(pass, given, patch));
-    point(pass, patch, uv, &points, |uv| bicubic.surface(uv))
+    let points: [Vec3; 16] = points(pass, given, patch);
+    let bicubic = bicubic(pass, given, patch);
+    point(pass, patch, uv, (&points, true), |uv| bicubic.surface(uv))
 }
 
 fn cap_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
@@ -172,13 +191,62 @@ fn cap_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -
 
 /// An end cap: corners, the points next to each on its edge, those next to the other end, and those inside.
 fn bicubic(pass: &Pass, given: &Controls, patch: usize) -> Bicubic {
-    let points = points(pass, given, patch);
+    let points: [Vec3; 16] = points(pass, given, patch);
     let four = |first: usize| std::array::from_fn(|i| points[first + i]);
     Bicubic {
         corners: four(0),
         near: four(4),
         far: four(8),
         inner: four(12),
+    }
+}
+
+fn gregory(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    blended_cap(pass, patch, uv, points(pass, given, patch))
+}
+
+fn gregory_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let Surface { du, dv, .. } = quad_surface(&net(points(pass, given, patch)), uv);
+    [du, dv]
+}
+
+/// What the control shader sums for each patch.
+fn summed(pass: &Pass, given: &Controls, patch: usize) -> [Vec3; 20] {
+    let words = &pass.controls[pass.patches[patch].controls as usize..];
+    std::array::from_fn(|i| {
+        let terms = &words[words[i] as usize..words[i + 1] as usize];
+        terms.chunks_exact(2).fold(Vec3::ZERO, |sum, term| {
+            let point: Vec3 = given.points[term[0] as usize].position.into();
+            sum + f32::from_bits(term[1]) * point
+        })
+    })
+}
+
+fn legacy(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+    blended_cap(pass, patch, uv, summed(pass, given, patch))
+}
+
+fn legacy_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
+    let Surface { du, dv, .. } = quad_surface(&net(summed(pass, given, patch)), uv);
+    [du, dv]
+}
+
+fn blended_cap(pass: &Pass, patch: usize, uv: Vec2, points: [Vec3; 20]) -> SurfacePoint {
+    let net = net(points);
+    point(pass, patch, uv, (&points[..16], true), |uv| {
+        quad_surface(&net, uv)
+    })
+}
+
+/// A Gregory cap: as a bicubic one, with two points inside of each corner.
+fn net(points: [Vec3; 20]) -> Net<4> {
+    let four = |first: usize| std::array::from_fn(|i| points[first + i]);
+    Net {
+        corners: four(0),
+        near: four(4),
+        far: four(8),
+        before: four(12),
+        behind: four(16),
     }
 }
 

@@ -13,9 +13,9 @@ use glam::{Vec2, Vec3};
 
 use crate::error::Result;
 use crate::mesh::{Model, Scheme};
-use crate::method::bicubic::{Bicubic, along_edges, edges_on};
+use crate::method::bicubic::{along_edges, edges_on};
+use crate::method::blended::{Net, blended, quad_surface};
 use crate::method::edge_field::Numbers;
-use crate::method::quads::{quad_weights, sum_of_four};
 use crate::method::spokes::{self, Family, Spokes};
 use crate::method::surface::{Controls, Surface, SurfacePoint};
 use crate::method::triangles::{corner_weights, sum_of_three};
@@ -59,15 +59,6 @@ const PER_EDGE: usize = 6;
 
 const THIRD: f32 = 1.0 / 3.0;
 
-/// A patch of N corners. `near` is next to corner i on edge i, `far` next to corner i + 1; `before` and `behind` are inside of these.
-struct Net<const N: usize> {
-    corners: [Vec3; N],
-    near: [Vec3; N],
-    far: [Vec3; N],
-    before: [Vec3; N],
-    behind: [Vec3; N],
-}
-
 fn net<const N: usize>(pass: &Pass, numbers: &Numbers, patch: usize) -> Net<N> {
     let cosines = &pass.tables[0][4 * pass.patches[patch].plan as usize..];
     let corners: [Vec3; N] = std::array::from_fn(|i| numbers.point(i));
@@ -110,14 +101,6 @@ fn inner_point<const N: usize>(
     let (rows, share) = if N == 4 { (3.0, THIRD) } else { (4.0, 0.25) };
     let along = other * corner + ((rows - 2.0 * own) - other) * next;
     share * ((along + (2.0 * own) * beyond) + field)
-}
-
-/// A mean of two inner points that differ, whose weights vanish together at a corner: there it counts for nothing.
-fn blended([a, b]: [f32; 2], [before, behind]: [Vec3; 2]) -> (Vec3, Vec3) {
-    let whole = (a + b).max(1e-9);
-    let mean = (a * before + b * behind) / whole;
-    // By b times this it changes with a, and by -a times this with b.
-    (mean, (before - behind) / (whole * whole))
 }
 
 fn quad_tangents(pass: &Pass, given: &Controls, patch: usize, uv: Vec2, _: u32) -> [Vec3; 2] {
@@ -167,35 +150,6 @@ fn on_border<const N: usize>(
         net.corners[next] - net.far[edge],
     ];
     numbers.on_edge(surface.position, [edge, FIELD], tangent, along[edge])
-}
-
-/// Position and derivatives as they are inside.
-fn quad_surface(net: &Net<4>, uv: Vec2) -> Surface {
-    let (u, v) = (uv.x, uv.y);
-    let (s, t) = (1.0 - u, 1.0 - v);
-    // From corner i along edge i, and along edge i - 1.
-    let (a, b) = ([u, v, s, t], [v, s, t, u]);
-    let blend: [(Vec3, Vec3); 4] =
-        std::array::from_fn(|i| blended([a[i], b[i]], [net.before[i], net.behind[(i + 3) % 4]]));
-    let patch = Bicubic {
-        corners: net.corners,
-        near: net.near,
-        far: net.far,
-        inner: blend.map(|(mean, _)| mean),
-    };
-    let surface = patch.surface(uv);
-    // What the inner points themselves change by.
-    let inside = 9.0 * ((s * u) * (t * v));
-    let weights = quad_weights(uv);
-    let turning = |signs: [f32; 4]| {
-        let weights = std::array::from_fn(|i| weights[i] * signs[i]);
-        inside * sum_of_four(weights, blend.map(|(_, change)| change))
-    };
-    Surface {
-        du: surface.du + turning([v, v, -t, -t]),
-        dv: surface.dv + turning([-u, s, s, -u]),
-        ..surface
-    }
 }
 
 fn triangle(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {

@@ -48,6 +48,7 @@
 mod acc;
 mod bft;
 mod bicubic;
+mod blended;
 mod cached;
 mod cell;
 mod change;
@@ -66,6 +67,7 @@ mod outline;
 mod pass;
 mod patches;
 mod phong;
+mod pieces;
 mod placed;
 mod pn;
 mod points;
@@ -73,6 +75,7 @@ mod ptex;
 mod qas;
 mod quads;
 mod quadtree;
+mod refine;
 mod regular;
 mod spline;
 mod spokes;
@@ -102,7 +105,7 @@ pub use change::{PassChange, Update};
 pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
 pub use editable::Editable;
-pub use options::{IsolationOptions, MethodOptions, TableNormals, TableOptions};
+pub use options::{EndCaps, IsolationOptions, MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use pass::{Pass, Twin, is_on_hexagon};
 pub use points::Points;
@@ -286,6 +289,7 @@ pub const METHODS: &[Method] = &[
     gregory::METHOD,
     acc::METHOD,
     stam::METHOD,
+    refine::METHOD,
     pn::METHOD,
     phong::METHOD,
     flat::METHOD,

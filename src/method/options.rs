@@ -41,18 +41,39 @@ impl From<TableOptions> for MethodOptions {
     }
 }
 
-/// How far refinement isolates what is irregular (Nießner, Loop, Meyer, DeRose 2012).
+/// How far refinement isolates what is irregular (Nießner, Loop, Meyer, DeRose 2012), and what is drawn of it then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IsolationOptions {
-    /// Refinements of the control mesh around extraordinary vertices, 1..=6; what is still irregular then has an end cap. Up to tess level 2^level all
-    /// vertices of caps are corners.
+    /// Refinements of the control mesh around extraordinary vertices, 0..=6; what is still irregular then has an end cap. Up to tess level 2^level all
+    /// vertices of caps are corners. Meshes with faces of other than four corners are refined once at least.
     pub level: u32,
+    /// The patches of what is still irregular.
+    pub caps: EndCaps,
+}
+
+/// The patch of a face that is irregular at the last level. All have the limit at their corners, and on edges beside B-spline patches the same curves as those. Names
+/// are OpenSubdiv's (documentation, *Subdivision Surfaces*, "End caps"), but for the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum EndCaps {
+    /// Bicubic patches: edges as Gregory patches have them, and inside the points of Loop, Schaefer 2008. Sixteen points.
+    #[default]
+    Bicubic,
+    /// Gregory patches (Loop, Schaefer, Ni, Castaño 2009): one plane along edges too. Twenty points.
+    Gregory,
+    /// The same, whose points the control shader sums from the vertices around them in each frame, where all others come from a table that is computed once a pose.
+    Legacy,
+    /// B-spline patches of the mesh's own vertices around a lone extraordinary vertex inside; the one that there is none for makes the corner the limit. There
+    /// the plane is not the limit's. Others are bicubic.
+    Bspline,
 }
 
 impl Default for IsolationOptions {
     /// Level 3, which serves tess level 8.
     fn default() -> IsolationOptions {
-        IsolationOptions { level: 3 }
+        IsolationOptions {
+            level: 3,
+            caps: EndCaps::default(),
+        }
     }
 }
 
@@ -60,18 +81,24 @@ impl IsolationOptions {
     /// The greatest `level`.
     pub const GREATEST_LEVEL: u32 = 6;
 
+    /// The refinements that a tess level needs: its binary logarithm. With fewer, vertices fall inside of end caps; with more, patches are cut finer than is asked for.
+    pub fn level_for(tess_level: f32) -> u32 {
+        let whole = tess_level.clamp(1.0, 64.0).ceil() as u32;
+        whole.next_power_of_two().ilog2()
+    }
+
     /// Checks the range.
     ///
     /// # Errors
     /// [`Error::Option`] when the level is out of range.
     pub fn check(self) -> Result<IsolationOptions> {
-        if (1..=Self::GREATEST_LEVEL).contains(&self.level) {
+        if self.level <= Self::GREATEST_LEVEL {
             return Ok(self);
         }
         Err(Error::Option {
             option: "--isolation",
             problem: format!("{} is out of range", self.level),
-            remedy: "give a level of 1 to 6; that of the tess level's binary logarithm is best"
+            remedy: "give a level of 0 to 6; that of the tess level's binary logarithm is best"
                 .into(),
         })
     }

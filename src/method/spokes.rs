@@ -6,7 +6,7 @@
 //! other, cubics, and both planes are one (G1) if v + v' is u times a linear function (Loop, Schaefer 2008). So v = m u + x and v' = m' u - x, where x
 //! belongs to the edge: its *field*. At the ends it follows from the tangents, and the normal on the edge is u x x for both faces, to the last bit.
 
-mod edge;
+pub mod edge;
 pub mod ring;
 
 use rustc_hash::FxHashMap;

@@ -11,8 +11,8 @@ use clap::{Args, ValueEnum};
 use hullform::Error;
 use hullform::mesh::{Model, Scheme};
 use hullform::method::{
-    IsolationOptions, METHODS, Method, MethodOptions, Prepared, TableNormals, TableOptions, method,
-    method_for, prepare_by_default_with,
+    EndCaps, IsolationOptions, METHODS, Method, MethodOptions, Prepared, Reproduces, TableNormals,
+    TableOptions, method, method_for, prepare_by_default_with,
 };
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -248,27 +248,82 @@ pub struct Tables {
     /// Normals of the limit, by tables of tangents, instead of subdivision shading
     #[arg(long, conflicts_with = "shading_level")]
     geometric_normals: bool,
-    /// Refinements around what is irregular before end caps, 1 to 6: up to level 2^N all that is drawn is on the limit [default: 3]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=6))]
+    /// Refinements by methods that refine, 0 to 6: around what is irregular before end caps, or everywhere; up to level 2^N all that is drawn is on the limit
+    /// [default: what the level needs]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=6))]
     isolation: Option<u32>,
+    /// Patches of what is still irregular after these [default: bicubic]
+    #[arg(long, value_name = "KIND")]
+    caps: Option<Caps>,
+}
+
+/// End caps.
+#[derive(Clone, Copy, ValueEnum)]
+enum Caps {
+    /// Bicubic patches with the limit's tangent plane at their corners
+    Bicubic,
+    /// Gregory patches
+    Gregory,
+    /// Gregory patches whose points the control shader sums in each frame
+    Legacy,
+    /// B-spline patches of the mesh's own vertices where only one vertex is extraordinary, else bicubic ones
+    Bspline,
+}
+
+impl From<Caps> for EndCaps {
+    fn from(caps: Caps) -> EndCaps {
+        match caps {
+            Caps::Bicubic => EndCaps::Bicubic,
+            Caps::Gregory => EndCaps::Gregory,
+            Caps::Legacy => EndCaps::Legacy,
+            Caps::Bspline => EndCaps::Bspline,
+        }
+    }
 }
 
 impl Tables {
-    /// What some methods prepare with.
+    /// What a method prepares with for some levels, of which each has the isolation that it needs, unless that is given or the method does not isolate.
+    ///
+    /// # Errors
+    /// As [`Tables::options`] of `all`.
+    pub fn by_isolation(
+        &self,
+        method: &Method,
+        levels: &[f32],
+        all: &[&Method],
+    ) -> hullform::Result<Vec<(MethodOptions, Vec<f32>)>> {
+        let mut groups: Vec<(MethodOptions, Vec<f32>)> = Vec::new();
+        let greatest = levels.iter().copied().fold(1.0, f32::max);
+        for &level in levels {
+            let own = if method.isolates { level } else { greatest };
+            let options = self.options(all, own)?;
+            match groups.iter_mut().find(|(known, _)| *known == options) {
+                Some((_, levels)) => levels.push(level),
+                None => groups.push((options, vec![level])),
+            }
+        }
+        Ok(groups)
+    }
+
+    /// What some methods prepare with for tess levels up to `level`.
     ///
     /// # Errors
     /// [`Error::Option`] when something is asked for that none of them uses.
-    pub fn options(&self, methods: &[&Method]) -> hullform::Result<MethodOptions> {
+    pub fn options(&self, methods: &[&Method], level: f32) -> hullform::Result<MethodOptions> {
         let mut asked = self.asked();
         if let Some((option, user)) =
             asked.find(|(_, user)| !methods.iter().any(|m| (user.uses)(m)))
         {
             return Err(useless(option, &user, methods));
         }
-        let isolation = self.isolation.map(|level| IsolationOptions { level });
+        let needed = || IsolationOptions::level_for(level);
+        let isolation = IsolationOptions {
+            level: self.isolation.unwrap_or_else(needed),
+            caps: self.caps.map_or(EndCaps::default(), EndCaps::from),
+        };
         Ok(MethodOptions {
             tables: self.tables(),
-            isolation: isolation.unwrap_or_default(),
+            isolation,
             ..MethodOptions::default()
         })
     }
@@ -280,6 +335,7 @@ impl Tables {
             ("--shading-level", self.shading_level.is_some(), TABLES),
             ("--geometric-normals", self.geometric_normals, TABLES),
             ("--isolation", self.isolation.is_some(), ISOLATION),
+            ("--caps", self.caps.is_some(), CAPS),
         ];
         let given = given.into_iter().filter(|(_, given, _)| *given);
         given.map(|(option, _, user)| (option, user))
@@ -319,6 +375,12 @@ const ISOLATION: User = User {
     uses: |method| method.isolates,
 };
 
+const CAPS: User = User {
+    lack: "nothing has end caps",
+    have: "has end caps",
+    uses: |method| matches!(method.contract.reproduces, Reproduces::LimitBesideCaps(_)),
+};
+
 /// An option, and methods that do not use it.
 fn useless(option: &'static str, user: &User, methods: &[&Method]) -> Error {
     let names = |methods: &mut dyn Iterator<Item = &Method>| {
@@ -353,7 +415,8 @@ impl Cut {
             Some(name) => method(name)?,
         };
         method.check(model.mesh().options().scheme)?;
-        let options = self.tables.options(&[method])?;
+        let level = self.steps.cutting().cut.level;
+        let options = self.tables.options(&[method], level)?;
         Ok(Chosen {
             method,
             options,

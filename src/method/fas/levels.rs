@@ -11,18 +11,10 @@ use crate::mesh::topology::Topology;
 use crate::method::fas::caps::{Caps, has_plane};
 use crate::method::fas::level::Level;
 use crate::method::patches::{self, Part};
+use crate::method::pieces::Cell;
 use crate::method::points::{Points, Row};
-use crate::method::ptex::Piece;
-use crate::method::{Pass, Prepared};
+use crate::method::{EndCaps, Pass, Prepared};
 use crate::subdivision::{BsplinePatch, ControlPoint, Mask, bspline_patch, refine};
-
-/// A face of a level that may be drawn: its part of the control mesh, and which piece of that it is.
-#[derive(Clone, Copy)]
-struct Cell {
-    part: Part,
-    piece: Piece,
-    face: u32,
-}
 
 /// A child to be: a corner of a face, and the cell but for its face.
 type Child = ((u32, u32), Cell);
@@ -34,12 +26,20 @@ pub struct Levels<'a> {
     splines: Pass,
     /// Splines with corners whose normals are compared with those nearby.
     cornered: Pass,
+    /// Bicubic end caps.
     caps: Pass,
+    /// Those of the kind that is asked for.
+    own_caps: Pass,
+    kind: EndCaps,
 }
 
 impl<'a> Levels<'a> {
-    /// Nothing yet, for passes of B-splines, of such with corners of their own, and of end caps.
-    pub fn new(model: &'a Model, [splines, cornered, caps]: [Pass; 3]) -> Levels<'a> {
+    /// Nothing yet, for passes of B-splines, of such with corners of their own, of bicubic end caps and of those of a kind.
+    pub fn new(
+        model: &'a Model,
+        [splines, cornered, caps, own_caps]: [Pass; 4],
+        kind: EndCaps,
+    ) -> Levels<'a> {
         let mut points = Points::default();
         points.begin(abi::POINTS_BLEND, 0);
         for vertex in 0..model.topology().vertex_count() as u32 {
@@ -51,11 +51,15 @@ impl<'a> Levels<'a> {
             splines,
             cornered,
             caps,
+            own_caps,
+            kind,
         }
     }
 
-    /// Refines so many times, one at least: n-gons are never drawn themselves.
+    /// Refines so many times; where there are n-gons, which are never drawn themselves, once at least.
     pub fn refine(mut self, count: u32) -> Prepared {
+        let has_parts = self.model.topology().quads().is_none();
+        let count = count.max(u32::from(has_parts));
         let mut topology = Cow::Borrowed(self.model.topology());
         let mut first_point = 0;
         let mut cells: Option<Vec<Cell>> = None;
@@ -85,7 +89,7 @@ impl<'a> Levels<'a> {
         }
         Prepared {
             points: self.points,
-            ..Prepared::of([self.splines, self.cornered, self.caps])
+            ..Prepared::of([self.splines, self.cornered, self.caps, self.own_caps])
         }
     }
 
@@ -93,22 +97,13 @@ impl<'a> Levels<'a> {
     fn first_level(&mut self, level: &mut Level<'_>) -> Vec<Child> {
         let parts = patches::parts(self.model);
         let is_part = |part: &&Part| level.topology.face(part.face).len() != 4;
-        let (mut of_parts, mut cells) = (Vec::new(), Vec::new());
-        for part in parts.iter().filter(is_part) {
-            let cell = Cell {
-                part: *part,
-                piece: Piece::default(),
-                face: 0,
-            };
-            of_parts.push(((part.face, part.corner), cell));
-        }
-        for part in parts.iter().filter(|part| !is_part(part)) {
-            cells.push(Cell {
-                part: *part,
-                piece: Piece::default(),
-                face: part.face,
-            });
-        }
+        let (of_parts, cells): (Vec<Part>, Vec<Part>) =
+            parts.iter().copied().partition(|part| is_part(&part));
+        let of_parts: Vec<Child> = of_parts
+            .into_iter()
+            .map(|part| ((part.face, part.corner), Cell::of(part)))
+            .collect();
+        let cells: Vec<Cell> = cells.into_iter().map(Cell::of).collect();
         for &((face, _), _) in &of_parts {
             level.is_irregular[face as usize] = true;
         }
@@ -128,20 +123,23 @@ impl<'a> Levels<'a> {
         }
         self.points.begin(abi::POINTS_REFINE, self.points.count);
         let mut mirrored = FxHashMap::default();
-        let mut caps = Caps::default();
+        let mut caps = Caps::new(self.kind);
         let mut children = Vec::new();
         for (cell, spline) in cells.iter().zip(&splines) {
             match spline {
                 Some(spline) => self.add_spline(level, cell, spline, &mut mirrored),
                 None if level.left == 0 => {
-                    let controls = caps.points(level, cell.face, &mut self.points);
+                    let cap = caps.of(level, cell.face, &mut self.points);
                     let record = record(self.model, level, cell, 0);
-                    add(&mut self.caps, self.model, cell, &controls, record);
+                    let pass = match cap.is_bicubic {
+                        true => &mut self.caps,
+                        false => &mut self.own_caps,
+                    };
+                    cell.add(pass, self.model, &cap.controls, record);
                 }
-                None => children.extend((0..4).map(|corner| {
-                    let piece = cell.piece.child(corner);
-                    ((cell.face, corner), Cell { piece, ..*cell })
-                })),
+                None => {
+                    children.extend((0..4).map(|corner| ((cell.face, corner), cell.child(corner))));
+                }
             }
         }
         children
@@ -171,7 +169,7 @@ impl<'a> Levels<'a> {
             0 => &mut self.splines,
             _ => &mut self.cornered,
         };
-        add(pass, self.model, cell, &controls, record);
+        cell.add(pass, self.model, &controls, record);
     }
 }
 
@@ -213,45 +211,12 @@ fn is_alone(topology: &Topology, face: u32, corner: u32) -> bool {
             && topology.fan(face, corner).faces.len() == 1
 }
 
-/// Adds a patch.
-fn add(pass: &mut Pass, model: &Model, cell: &Cell, controls: &[u32], record: abi::Patch) {
-    pass.patches.push(abi::Patch {
-        controls: pass.controls.len() as u32,
-        ..record
-    });
-    pass.controls.extend_from_slice(controls);
-    pass.texture.push(texture(model, cell));
-}
-
 /// The patch of a face but for its control points.
 fn record(model: &Model, level: &Level<'_>, cell: &Cell, plan: u32) -> abi::Patch {
-    let topology = &level.topology;
-    let valence = |&vertex: &u32| topology.vertex_edges(vertex).len().min(255) as u8;
-    let mut valences = [0; 4];
-    for (valence_of, vertex) in valences.iter_mut().zip(topology.face(cell.face)) {
-        *valence_of = valence(vertex);
-    }
-    let mut flags = flags(level, cell.face);
-    if model.topology().face(cell.part.face).len() != 4 {
-        flags |= abi::PATCH_HALF;
-    }
-    if cell.piece.depth > 0 {
-        flags |= abi::CHILD_PIECE << abi::PATCH_CHILD_SHIFT;
-    }
+    let record = cell.record(model, &level.topology);
     abi::Patch {
-        ptex: cell.part.ptex,
-        flags,
-        controls: 0,
-        plan: cell.piece.plan() | plan,
-        valences: u32::from_le_bytes(valences),
+        flags: record.flags | flags(level, cell.face),
+        plan: record.plan | plan,
+        ..record
     }
-}
-
-/// Texture coordinates at the corners of a piece: linear between those of its part.
-fn texture(model: &Model, cell: &Cell) -> [[f32; 2]; 4] {
-    let corners = patches::texture(model, cell.part, 0).map(glam::Vec2::from);
-    cell.piece.corners().map(|[u, v]| {
-        let [a, b, c, d] = corners;
-        a.lerp(b, u).lerp(d.lerp(c, u), v).to_array()
-    })
 }

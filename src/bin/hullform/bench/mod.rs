@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use hullform::gpu::{Backend, Decides, Residence};
+use hullform::host::Bench;
 use hullform::mesh::Model;
 use hullform::method::{METHODS, Method, Prepared, Reproduces, method};
 use hullform::{Error, Result};
@@ -214,48 +215,26 @@ fn keep_memory() {
 fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Result<Vec<Row>> {
     let model = Model::new(model::load(Some(path), &arguments.shape)?);
     let methods = methods(arguments, &model)?;
-    let options = arguments.tables.options(&methods)?;
-    let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
     let bench = drawing::blind(gpu)?;
     let mut subjects = Vec::new();
     for &method in &methods {
-        let chosen = Chosen {
-            method,
-            options,
-            by_default: false,
-            replaceable: false,
-        };
-        let first = arguments.residence.first().copied();
-        let ways = arguments.backend.iter().flat_map(|&backend| {
-            let residences = arguments.residence.iter();
-            residences.map(move |&residence| (Backend::from(backend), residence))
-        });
-        for (backend, own) in ways {
-            let residence = Residence::from(own);
-            let prepared = drawing::prepare(&model, chosen).and_then(|prepared| {
-                backend.check(&prepared, residence, greatest)?;
-                Ok(prepared)
-            });
-            let has_cache = |prepared: &Prepared| {
-                let mut passes = prepared.passes.iter();
-                passes.any(|pass| pass.cached.is_some())
+        let groups = arguments
+            .tables
+            .by_isolation(method, &arguments.levels, &methods)?;
+        for (options, levels) in groups {
+            let chosen = Chosen {
+                method,
+                options,
+                by_default: false,
+                replaceable: false,
             };
-            if Some(own) != first && prepared.as_ref().is_ok_and(|p| !has_cache(p)) {
-                continue;
-            }
-            match prepared {
-                Ok(prepared) => {
-                    let drawn = (method.name, backend, residence);
-                    subjects.push(Subject::new(
-                        gpu, &bench, path, &model, prepared, drawn, arguments, global,
-                    )?);
-                }
-                // What was not asked for by name may be refused, or left to another backend.
-                Err(error) if arguments.methods.is_empty() || arguments.backend.len() > 1 => {
-                    tracing::warn!("{}: {} is left out: {error}", path.display(), method.name);
-                }
-                Err(error) => return Err(error),
-            }
+            add(
+                (gpu, &bench),
+                (path, &model),
+                (chosen, &levels),
+                (arguments, global),
+                &mut subjects,
+            )?;
         }
     }
     progress::during("drawing frames", |bar| {
@@ -269,6 +248,51 @@ fn measure(gpu: &Gpu, path: &Path, arguments: &Arguments, global: &Global) -> Re
         Ok::<_, Error>(())
     })?;
     Ok(subjects.iter().flat_map(Subject::rows).collect())
+}
+
+/// Adds a method at some levels, by all back-ends and residences.
+fn add<'a>(
+    (gpu, bench): (&'a Gpu, &'a Bench),
+    (path, model): (&Path, &Model),
+    (chosen, levels): (Chosen, &[f32]),
+    (arguments, global): (&Arguments, &Global),
+    subjects: &mut Vec<Subject<'a>>,
+) -> Result<()> {
+    let greatest = levels.iter().copied().fold(1.0, f32::max);
+    let first = arguments.residence.first().copied();
+    let ways = arguments.backend.iter().flat_map(|&backend| {
+        let residences = arguments.residence.iter();
+        residences.map(move |&residence| (Backend::from(backend), residence))
+    });
+    for (backend, own) in ways {
+        let residence = Residence::from(own);
+        let prepared = drawing::prepare(model, chosen).and_then(|prepared| {
+            backend.check(&prepared, residence, greatest)?;
+            Ok(prepared)
+        });
+        let has_cache = |prepared: &Prepared| {
+            let mut passes = prepared.passes.iter();
+            passes.any(|pass| pass.cached.is_some())
+        };
+        if Some(own) != first && prepared.as_ref().is_ok_and(|p| !has_cache(p)) {
+            continue;
+        }
+        match prepared {
+            Ok(prepared) => {
+                let drawn = (chosen.method.name, backend, residence);
+                subjects.push(Subject::new(
+                    gpu, bench, path, model, prepared, drawn, levels, arguments, global,
+                )?);
+            }
+            // What was not asked for by name may be refused, or left to another backend.
+            Err(error) if arguments.methods.is_empty() || arguments.backend.len() > 1 => {
+                let name = chosen.method.name;
+                tracing::warn!("{}: {name} is left out: {error}", path.display());
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 /// The methods of `--methods`, or all that can draw the model, and what ratios are to.

@@ -62,7 +62,7 @@ struct Level {
 }
 
 impl<'a> Subject<'a> {
-    /// Brings a model to the device, as a method prepared it.
+    /// Brings a model to the device, as a method prepared it for these levels.
     #[allow(clippy::too_many_arguments)]
     pub fn new(
         gpu: &'a Gpu,
@@ -71,6 +71,7 @@ impl<'a> Subject<'a> {
         model: &Model,
         prepared: Prepared,
         (method, backend, residence): (&'static str, Backend, Residence),
+        levels: &[f32],
         arguments: &Arguments,
         global: &Global,
     ) -> Result<Subject<'a>> {
@@ -86,7 +87,7 @@ impl<'a> Subject<'a> {
                 draws: 1,
             },
         };
-        let greatest = arguments.levels.iter().copied().fold(1.0, f32::max);
+        let greatest = levels.iter().copied().fold(1.0, f32::max);
         let device_counts = gpu.device.info().support.optional.pipeline_statistics_query
             && backend == Backend::Tessellator;
         let slots = drawing::slots(global.slots);
@@ -131,7 +132,7 @@ impl<'a> Subject<'a> {
         };
         let computes = !arguments.is_static && drawing.prepared().points.count > 0;
         let points = computes.then(|| drawing.point_pipeline()).transpose()?;
-        let levels = arguments.levels.iter().map(list).collect::<Result<_>>()?;
+        let levels = levels.iter().map(list).collect::<Result<_>>()?;
         Ok(Subject {
             gpu,
             bench,

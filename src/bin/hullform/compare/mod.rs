@@ -92,7 +92,9 @@ pub fn run(arguments: &Arguments, global: &Global) -> Result<()> {
     let model = Model::new(model::load(Some(&arguments.model), &arguments.shape)?);
     let asked = asked(&arguments.methods, model.mesh().options().scheme)?;
     let all: Vec<&Method> = asked.iter().copied().chain(against).collect();
-    let options = arguments.tables.options(&all)?;
+    let options = arguments
+        .tables
+        .options(&all, arguments.steps.cutting().cut.level)?;
     let chosen = |method| Chosen {
         method,
         options,

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::{DVec3, Vec2};
 use hullform::gpu::Cut;
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Method, MethodOptions, Pass, to_ptex};
+use hullform::method::{IsolationOptions, METHODS, Method, Pass, to_ptex};
 use hullform::subdivision::LimitSurface;
 use hullform::tessellation::{Domain, Spacing};
 use plotters::prelude::*;
@@ -104,7 +104,11 @@ fn costs(
 
 /// The distance between the middles of triangles and the limit there; None where the method refuses the model.
 fn measure(method: &Method, model: &Model, truth: &LimitSurface, level: u32) -> Option<Point> {
-    let prepared = method.prepare(model, MethodOptions::default()).ok()?;
+    let isolation = IsolationOptions {
+        level: IsolationOptions::level_for(level as f32),
+        ..IsolationOptions::default()
+    };
+    let prepared = method.prepare(model, isolation).ok()?;
     let controls = prepared.controls(model.positions());
     let triangles: Vec<(&Pass, usize, [Vec2; 3])> = prepared
         .passes

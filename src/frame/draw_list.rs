@@ -269,8 +269,12 @@ impl DrawList {
         patch: u32,
         uv: &[[f32; 2]],
     ) -> Option<Vec<[u32; 3]>> {
-        let levels = self.levels(prepared, pass, patch)?;
-        self.options.backend.join(&levels, self.cut.spacing, uv)
+        self.join(&self.levels(prepared, pass, patch)?, uv)
+    }
+
+    /// The same of a patch at levels that a device has decided.
+    pub fn join(&self, levels: &Levels, uv: &[[f32; 2]]) -> Option<Vec<[u32; 3]>> {
+        self.options.backend.join(levels, self.cut.spacing, uv)
     }
 }
 

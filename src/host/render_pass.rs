@@ -33,17 +33,19 @@ pub enum Slice {
     Between,
     /// What is left.
     Last,
+    /// All of a part, of a picture that is there and stays around it.
+    Part,
 }
 
 impl Slice {
     /// Whether it begins the picture.
     pub fn begins(self) -> bool {
-        matches!(self, Slice::Whole | Slice::First)
+        matches!(self, Slice::Whole | Slice::First | Slice::Part)
     }
 
     /// Whether the picture is there afterwards.
     pub fn ends(self) -> bool {
-        matches!(self, Slice::Whole | Slice::Last)
+        matches!(self, Slice::Whole | Slice::Last | Slice::Part)
     }
 }
 
@@ -61,7 +63,7 @@ pub(super) unsafe fn create(
     let mut attachments = vec![colour(formats, slice), depth(formats, slice)];
     let resolves = formats.resolves() && slice.ends();
     if resolves {
-        attachments.push(resolved(formats));
+        attachments.push(resolved(formats, slice));
     }
     let reference = |attachment, layout| vk::AttachmentReference { attachment, layout };
     let colours = [reference(0, Layout::COLOR_ATTACHMENT_OPTIMAL)];
@@ -90,7 +92,11 @@ fn colour(formats: Formats, slice: Slice) -> vk::AttachmentDescription {
         false => Layout::TRANSFER_SRC_OPTIMAL,
     };
     let is_kept = !(formats.resolves() && slice.ends());
-    sliced(formats.colour, formats, slice, is_kept, layout)
+    let attachment = sliced(formats.colour, formats, slice, is_kept, layout);
+    match formats.resolves() {
+        true => attachment,
+        false => stays_around(attachment, slice),
+    }
 }
 
 fn depth(formats: Formats, slice: Slice) -> vk::AttachmentDescription {
@@ -121,11 +127,21 @@ fn sliced(
     }
 }
 
-fn resolved(formats: Formats) -> vk::AttachmentDescription {
-    cleared(formats.colour, vk::SampleCountFlags::TYPE_1)
+fn resolved(formats: Formats, slice: Slice) -> vk::AttachmentDescription {
+    let attachment = cleared(formats.colour, vk::SampleCountFlags::TYPE_1)
         .load_op(vk::AttachmentLoadOp::DONT_CARE)
         .store_op(vk::AttachmentStoreOp::STORE)
-        .final_layout(Layout::TRANSFER_SRC_OPTIMAL)
+        .final_layout(Layout::TRANSFER_SRC_OPTIMAL);
+    stays_around(attachment, slice)
+}
+
+/// The picture's image: what lies around a part stays only where the image does not come from `UNDEFINED` (Vulkan spec, "Render Pass Load Operations":
+/// operations are confined to the render area).
+fn stays_around(attachment: vk::AttachmentDescription, slice: Slice) -> vk::AttachmentDescription {
+    match slice {
+        Slice::Part => attachment.initial_layout(Layout::TRANSFER_SRC_OPTIMAL),
+        _ => attachment,
+    }
 }
 
 fn cleared(format: vk::Format, samples: vk::SampleCountFlags) -> vk::AttachmentDescription {

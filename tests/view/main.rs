@@ -3,6 +3,9 @@
 #![cfg(all(feature = "view", target_os = "linux"))]
 
 mod display;
+mod drag;
+mod drop;
+mod files;
 mod losses;
 mod pictures;
 mod random;

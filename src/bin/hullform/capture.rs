@@ -7,10 +7,11 @@ use crate::gpu::Gpu;
 use crate::options::{Chosen, Cutting, Global};
 use crate::output::{Point, Surface};
 use glam::Vec3;
-use hullform::gpu::{Batch, Fill, SurfaceOptions};
+use hullform::gpu::{Batch, Decides, Decision, Fill, SurfaceOptions, View};
 use hullform::host::{Bench, Shot, Style};
 use hullform::mesh::Model;
 use hullform::method::{DepthTags, Displacement, Prepared, to_ptex};
+use hullform::tessellation::Levels;
 use hullform::{Error, Result, abi};
 
 /// Vertices that are captured at once: as many as 64 MiB hold.
@@ -18,6 +19,18 @@ const CAPTURED: u32 = (64 << 20) / size_of::<abi::Captured>() as u32;
 
 /// The picture in which depth tags see the surface: `render`'s own.
 const SEEN: [u32; 2] = [1280, 720];
+
+/// What levels go by.
+#[derive(Clone, Debug)]
+pub enum By {
+    /// The cut alone.
+    Cut,
+    /// Depth tags.
+    Tags(DepthTags),
+    /// The device, of what is seen in a view. It leaves nothing out.
+    #[cfg_attr(not(feature = "view"), expect(dead_code, reason = "for the window"))]
+    Device(Decision, View),
+}
 
 /// Tessellates `model` on the device, some patches at a time, and gathers what the evaluating shader produced. Depth tags, if any, go by what
 /// `camera` sees.
@@ -47,16 +60,17 @@ pub fn capture(
         subject.framed(camera, SEEN)
     });
     let tags = seen.transpose()?.and_then(|framed| framed.tags);
-    captured(gpu, &bench, model, prepared, (cutting, tags), global)
+    let by = tags.map_or(By::Cut, By::Tags);
+    captured(gpu, &bench, model, prepared, (cutting, by), global)
 }
 
-/// The same of what has been prepared, with the depth tags that are given.
+/// The same of what has been prepared, by levels that are given.
 pub fn captured(
     gpu: &Gpu,
     bench: &Bench,
     model: &Model,
     prepared: Prepared,
-    (cutting, tags): (Cutting, Option<DepthTags>),
+    (cutting, by): (Cutting, By),
     global: &Global,
 ) -> Result<Surface> {
     let Cutting {
@@ -72,10 +86,19 @@ pub fn captured(
         slots: drawing::slots(global.slots),
         capture_vertices: CAPTURED,
         greatest_level: cut.level,
+        decides: match &by {
+            By::Cut | By::Tags(_) => Decides::Host,
+            By::Device(..) => Decides::Device,
+        },
         ..Default::default()
     };
     let mut drawing = Drawing::new(gpu, bench, model, prepared, options, global.points)?;
-    drawing.tags = tags;
+    let mut view = drawing::nowhere();
+    match by {
+        By::Cut => {}
+        By::Tags(tags) => drawing.tags = Some(tags),
+        By::Device(decision, seen) => (drawing.decision, view) = (decision, seen),
+    }
     let list = drawing.draw_list(cut)?;
     let style = Style::new(options, cut.spacing, Fill::Discard);
     let pipelines = bench.pipelines(drawing.prepared(), style)?;
@@ -83,7 +106,7 @@ pub fn captured(
     for batch in list.batches() {
         drawing.draw(&[Shot {
             pipelines: &pipelines,
-            view: drawing::nowhere(),
+            view,
             instances: 1,
             batches: vec![batch],
         }])?;
@@ -96,7 +119,14 @@ pub fn captured(
 
 /// The captured vertices by patch, v and u, each once.
 fn once_each(drawing: &Drawing<'_>, batch: Batch<'_>) -> Result<Vec<abi::Captured>> {
-    let expected = batch.vertices();
+    let patches = batch.patches().filter_map(|patch| {
+        let levels = decided(drawing, batch.pass(), patch)?;
+        Some(levels.vertices(batch.list().cut().spacing))
+    });
+    let expected = match drawing.surface().options().decides {
+        Decides::Host => batch.vertices(),
+        Decides::Device => patches.sum(),
+    };
     let (vertices, _) = drawing.captured(expected)?;
     if vertices.len() != expected as usize {
         tracing::warn!(
@@ -105,6 +135,19 @@ fn once_each(drawing: &Drawing<'_>, batch: Batch<'_>) -> Result<Vec<abi::Capture
         );
     }
     Ok(vertices)
+}
+
+/// The levels of a patch that was drawn, where the device has decided about them.
+fn decided(drawing: &Drawing<'_>, pass: usize, patch: u32) -> Option<Levels> {
+    let surface = drawing.surface();
+    let there = surface.options().decides == Decides::Device;
+    let record = surface.decided(pass, 0).get(patch as usize);
+    let record = record.filter(|_| there)?;
+    Some(Levels {
+        domain: drawing.prepared().passes[pass].domain,
+        edges: record.edges,
+        inside: record.inside,
+    })
 }
 
 /// Adds the points and triangles of captured patches.
@@ -128,12 +171,14 @@ fn add_patches(
         };
         let first = surface.points.len() as u32;
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
-        let triangles = batch
-            .list()
-            .triangles(prepared, batch.pass(), number, &uv)
-            .ok_or_else(|| Error::Lost {
-                what: format!("vertices of a patch of face {}", patch.ptex),
-            })?;
+        let list = batch.list();
+        let triangles = match decided(drawing, batch.pass(), number) {
+            None => list.triangles(prepared, batch.pass(), number, &uv),
+            Some(levels) => list.join(&levels, &uv),
+        };
+        let triangles = triangles.ok_or_else(|| Error::Lost {
+            what: format!("vertices of a patch of face {}", patch.ptex),
+        })?;
         let triangles = triangles.into_iter();
         surface
             .triangles

@@ -14,6 +14,7 @@ pub(super) struct Slices {
     first: vk::RenderPass,
     between: vk::RenderPass,
     last: vk::RenderPass,
+    part: vk::RenderPass,
     /// Of colour and depth alone.
     framebuffer: vk::Framebuffer,
 }
@@ -30,6 +31,7 @@ impl OffscreenTarget {
             first: vk::RenderPass::null(),
             between: vk::RenderPass::null(),
             last: vk::RenderPass::null(),
+            part: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
         };
         // SAFETY: the device is live; formats and samples were checked against its limits.
@@ -37,6 +39,7 @@ impl OffscreenTarget {
         slices.first = make(Slice::First)?;
         slices.between = make(Slice::Between)?;
         slices.last = make(Slice::Last)?;
+        slices.part = make(Slice::Part)?;
         let views = [self.images[0].view, self.images[1].view];
         let info = vk::FramebufferCreateInfo::default()
             .render_pass(slices.first)
@@ -65,11 +68,13 @@ impl OffscreenTarget {
     /// their order, with the same area; other work of the queue may come between them. A ring is used by one pass at a time: behind the first slice
     /// [`cmd_ring_barrier`](crate::gpu::ring::cmd_ring_barrier) comes before each.
     ///
+    /// A part ([`Slice::Part`]) is drawn at once, into a picture that is there: what lies around the [area](Self::area) stays as it is.
+    ///
     /// # Panics
     /// Where slices were not [allowed](Self::allow_slices).
     ///
     /// # Safety
-    /// As [`begin`](Self::begin); behind another slice than the first or the whole the one before it was executed.
+    /// As [`begin`](Self::begin); behind the first slice the one before it was executed, and before a part a whole picture.
     pub unsafe fn begin_slice(&self, cmd: vk::CommandBuffer, clear: [f32; 4], slice: Slice) {
         let slices = self.slices.as_ref().expect("slices have been allowed");
         let pass = match slice {
@@ -77,6 +82,7 @@ impl OffscreenTarget {
             Slice::First => (slices.first, slices.framebuffer),
             Slice::Between => (slices.between, slices.framebuffer),
             Slice::Last => (slices.last, self.framebuffer),
+            Slice::Part => (slices.part, self.framebuffer),
         };
         // SAFETY: this function's contract.
         unsafe {
@@ -95,7 +101,7 @@ impl Drop for Slices {
         // SAFETY: all of it was made from this device, which waits for each submission, so nothing is in use; null handles are allowed.
         unsafe {
             device.destroy_framebuffer(self.framebuffer, None);
-            for pass in [self.first, self.between, self.last] {
+            for pass in [self.first, self.between, self.last, self.part] {
                 device.destroy_render_pass(pass, None);
             }
         }

@@ -368,7 +368,7 @@ impl Viewer {
                 let all = [None, Some(ErrorKind::Position), Some(ErrorKind::Normal)];
                 self.compare.map = next(&all, self.compare.map);
             }
-            Command::Play => self.deform.playing ^= true,
+            Command::Play => self.deform.play(),
             Command::Panels => self.panels ^= true,
             Command::Sheet => self.sheet ^= true,
             Command::Screenshot => self.wishes.push(Wish::Screenshot),

@@ -66,6 +66,14 @@ impl Deform {
         self.playing && self.kind != Kind::None
     }
 
+    /// Lets time go on, or stops it. What is asked to move without a kind bends.
+    pub fn play(&mut self) {
+        self.playing = !self.is_playing();
+        if self.kind == Kind::None {
+            self.kind = Kind::Bend;
+        }
+    }
+
     /// Lets so many seconds pass.
     pub fn pass(&mut self, seconds: f64) {
         if self.is_playing() {

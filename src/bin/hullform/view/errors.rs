@@ -6,15 +6,16 @@ use hullform::Result;
 use hullform::gpu::Cut;
 use hullform::host::ColouredVertex;
 use hullform::mesh::{Model, Scheme};
-use hullform::method::DepthTags;
 use hullform::subdivision::LimitSurface;
 use indicatif::ProgressBar;
 
 use super::context::{Context, Recipe, prepare, under_scheme};
 use super::draft::Draft;
+use super::orbit::Orbit;
 use super::probe::Boxes;
 use super::viewer::ErrorKind;
 use super::workers::Entrance;
+use crate::adaptive::Adaptive;
 use crate::camera::View;
 use crate::capture;
 use crate::compare::errors::{Errors, Known, Reference, Summary};
@@ -22,6 +23,7 @@ use crate::compare::picture::coloured;
 use crate::compare::scale::Scale;
 use crate::db::database;
 use crate::drawing;
+use crate::eye::Sphere;
 use crate::options::{Cutting, Triangulate};
 use crate::output::Surface;
 
@@ -42,8 +44,21 @@ pub struct Subject {
     pub shaders: u64,
     /// How it is cut.
     pub cut: Cut,
-    /// The depths by which levels go, where they do.
-    pub tags: Option<DepthTags>,
+    /// By what levels differ, where they do.
+    pub adapted: Option<Adapted>,
+}
+
+/// By what levels differ from patch to patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adapted {
+    /// What they go by.
+    pub by: Adaptive,
+    /// The camera that cuts.
+    pub orbit: Orbit,
+    /// The size of its picture in pixels.
+    pub size: [u32; 2],
+    /// What else may be seen there, which planes go by.
+    pub all: Sphere,
 }
 
 /// A surface as the device makes it, with what is asked of it.
@@ -70,6 +85,7 @@ pub fn measure(
     draft: &Draft,
     triangulate: Triangulate,
     subject: Subject,
+    by: capture::By,
 ) -> Result<Measured> {
     let mesh = draft.mesh()?;
     let scheme = subject.scheme.unwrap_or(mesh.options().scheme);
@@ -85,7 +101,7 @@ pub fn measure(
         residence: subject.recipe.residence,
         adaptive: None,
     };
-    let how = (cutting, subject.tags.clone());
+    let how = (cutting, by);
     let (gpu, global) = (&context.gpu, &context.global);
     let surface = capture::captured(gpu, &bench, &model, prepared, how, global)?;
     Ok(Measured {

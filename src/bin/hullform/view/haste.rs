@@ -41,6 +41,8 @@ pub struct Sent {
     pub is_last: bool,
     /// Whether it is coarser than the full one.
     pub is_coarser: bool,
+    /// Whether it is a part of the picture, of which nothing can be told about all of it.
+    pub is_part: bool,
 }
 
 impl Haste {
@@ -89,7 +91,7 @@ impl Haste {
             return None;
         }
         let whole = std::mem::take(&mut self.so_far);
-        if !sent.is_coarser {
+        if !sent.is_coarser && !sent.is_part {
             self.full = Some(whole);
         }
         Some(whole)
@@ -114,6 +116,11 @@ impl Haste {
             true => SLICE / self.pace,
             false => f64::INFINITY,
         }
+    }
+
+    /// Whether so much work is done in the time of a frame that is not slow.
+    pub fn is_quick(&self, work: f64) -> bool {
+        self.pace * work <= SLOW
     }
 
     /// The level at which a scene is drawn that has changed, instead of a greater one.
@@ -149,6 +156,7 @@ mod tests {
             seconds,
             is_last,
             is_coarser,
+            is_part: false,
         }
     }
 
@@ -169,6 +177,14 @@ mod tests {
         assert_eq!(coarser.level(64.0), 32.0);
         assert!(coarser.left().is_some_and(|left| left <= REST));
         assert_eq!(took(0.16, false).left(), None);
+        let part = Sent {
+            is_part: true,
+            ..sent(0.01, true, false)
+        };
+        haste.sent(part);
+        haste.done(None);
+        assert!(haste.is_slow(), "a part tells nothing of the whole");
+        assert!(haste.is_quick(1e5) && !haste.is_quick(1e8));
     }
 
     #[test]

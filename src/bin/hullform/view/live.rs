@@ -18,6 +18,14 @@ pub struct Live {
     draft: Draft,
 }
 
+/// What followed from an edit.
+pub struct Followed {
+    /// What has changed of each side.
+    pub updates: Vec<Update>,
+    /// Vertices around all that may look different in the control cage.
+    pub vertices: Vec<u32>,
+}
+
 impl Live {
     /// A model that was prepared for all sides as a draft has it; None where its faces are others, whose numbers say nothing.
     pub fn new(model: &Model, sides: Vec<Editable>, draft: Draft) -> Option<Live> {
@@ -34,26 +42,31 @@ impl Live {
         &self.sides[side]
     }
 
-    /// Brings what was prepared up to a draft: what has changed of each side. Places are no part of that. Takes its time: for workers.
+    /// Brings what was prepared up to a draft. Places are no part of that. Takes its time: for workers.
     ///
     /// # Errors
     /// What the library refuses. It is of no use afterwards.
-    pub fn follow(&mut self, draft: &Draft, database: &Database) -> Result<Vec<Update>> {
+    pub fn follow(&mut self, draft: &Draft, database: &Database) -> Result<Followed> {
         let _span = tracing::debug_span!("edit").entered();
         let mut edit = self.model.mesh().edit();
+        let mut vertices = Vec::new();
         for (&[a, b], sharpness) in changed(&self.draft.creases, &draft.creases) {
             edit.crease(a, b, sharpness);
+            vertices.extend([a, b]);
         }
         for (&vertex, sharpness) in changed(&self.draft.corners, &draft.corners) {
             edit.corner(vertex, sharpness);
+            vertices.push(vertex);
         }
         turn(&mut edit, &self.draft.holes, &draft.holes);
         let changes = self.model.apply(&edit)?;
         self.draft = draft.clone();
         let sides = self.sides.iter_mut();
-        sides
-            .map(|side| side.update(&self.model, &changes, database))
-            .collect()
+        let updates = sides.map(|side| side.update(&self.model, &changes, database));
+        Ok(Followed {
+            updates: updates.collect::<Result<_>>()?,
+            vertices,
+        })
     }
 }
 
@@ -100,13 +113,20 @@ mod tests {
         history.change(Change::Holes([(2, [false, true])].into()), false);
         let changed = history.draft().clone();
         for draft in [&changed, &start, &changed] {
-            let updates = live.follow(draft, &database).expect("it follows");
-            assert!(!updates[0].is_whole && updates[0].words() > 0);
+            let followed = live.follow(draft, &database).expect("it follows");
+            let update = &followed.updates[0];
+            assert!(!update.is_whole && update.words() > 0);
+            assert!(
+                [edge[0], edge[1], 1]
+                    .iter()
+                    .all(|v| followed.vertices.contains(v))
+            );
             let came = Draft::new(live.model.mesh().clone());
             let tags = |of: &Draft| (of.creases.clone(), of.corners.clone(), of.holes.clone());
             assert_eq!(tags(&came), tags(draft));
         }
         let none = live.follow(&changed, &database).expect("it follows");
-        assert_eq!(none[0].words(), 0, "nothing is left to do");
+        assert_eq!(none.updates[0].words(), 0, "nothing is left to do");
+        assert!(none.vertices.is_empty());
     }
 }

@@ -35,6 +35,8 @@ pub struct Overlay {
     pub triangles: Vec<[u32; 3]>,
     /// Maps of errors, one a side.
     pub maps: Vec<Mesh>,
+    /// The sides and parts that they are of.
+    pub mapped: Vec<(usize, u64)>,
 }
 
 /// Draws lines and dots of so many pixels.
@@ -54,7 +56,7 @@ impl Overlay {
         let mut overlay = Overlay {
             vertices: vertices.into(),
             triangles: triangles.into(),
-            maps: Vec::new(),
+            ..Overlay::default()
         };
         let all = viewer.sphere();
         let mut pen = Pen {

@@ -10,6 +10,8 @@ mod unsaved;
 
 use egui::{Color32, Context, CornerRadius, Frame, Margin, RichText, Stroke, Ui};
 
+pub use readings::PACINGS;
+
 use super::command::{Command, of_event};
 use super::readings::Readings;
 use super::viewer::Viewer;
@@ -212,4 +214,63 @@ fn bubble(ui: &mut Ui, words: &str, is_error: bool) {
     frame.show(ui, |ui| {
         ui.label(RichText::new(words).color(Color32::from_gray(232)))
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{Event, MouseWheelUnit, RawInput, Rect, pos2, vec2};
+
+    /// Runs the panels on events over the middle of the scene, and lets what they began come to rest.
+    fn runs(viewer: &mut Viewer, events: Vec<Event>) {
+        let (ctx, readings) = (Context::default(), Readings::default());
+        let moved = Event::PointerMoved(pos2(500.0, 350.0));
+        let mut all = [vec![moved], events].into_iter();
+        for frame in 0..30 {
+            let input = RawInput {
+                screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 700.0))),
+                time: Some(f64::from(frame) / 60.0),
+                events: all.next().unwrap_or_default(),
+                ..RawInput::default()
+            };
+            let _ = ctx.run(input, |ctx| {
+                let status = Status {
+                    readings: &readings,
+                    busy: Vec::new(),
+                    probe: None,
+                    shaders: None,
+                    methods: Vec::new(),
+                    scale: None,
+                };
+                show(ctx, viewer, &status);
+            });
+        }
+    }
+
+    #[test]
+    fn two_fingers_and_pinches_come_as_near_as_wheels_and_no_nearer_than_they_say() {
+        let distance = |events: Vec<Event>| {
+            let mut viewer = Viewer::default();
+            let before = viewer.orbit.distance;
+            runs(&mut viewer, events);
+            viewer.orbit.distance / before
+        };
+        let scroll = |unit, delta: f32| Event::MouseWheel {
+            unit,
+            delta: vec2(0.0, delta),
+            modifiers: egui::Modifiers::NONE,
+        };
+        let wheel = distance(vec![scroll(MouseWheelUnit::Line, 1.0)]);
+        assert!((0.7..0.95).contains(&wheel), "a step of a wheel: {wheel}");
+        let fingers = distance(vec![scroll(MouseWheelUnit::Point, 10.0); 4]);
+        let at_once = distance(vec![scroll(MouseWheelUnit::Point, 40.0)]);
+        assert!((fingers - at_once).abs() < 1e-3, "{fingers} {at_once}");
+        assert!((0.8..0.95).contains(&fingers), "forty pixels: {fingers}");
+        let pinch = distance(vec![Event::Zoom(1.25)]);
+        assert!((pinch - 1.0 / 1.25).abs() < 1e-3, "{pinch}");
+        let back = distance(vec![Event::Zoom(1.25), Event::Zoom(0.8)]);
+        assert!((back - 1.0).abs() < 1e-3, "{back}");
+        let nothing = distance(vec![Event::Zoom(0.0), Event::Zoom(f32::NAN)]);
+        assert_eq!(nothing, 1.0, "nonsense moves nothing");
+    }
 }

@@ -19,7 +19,6 @@ use std::time::{Duration, Instant};
 use hullform::Result;
 use hullform::host::{Shown, WindowSurface};
 use hullform::mesh::ControlMesh;
-use hullform::method::Update;
 use hullform::plan::Database;
 
 use super::canvas::Canvas;
@@ -27,7 +26,7 @@ use super::clipboard::Clipboard;
 use super::context::{Context, Key};
 use super::errors::{Measured, Subject};
 use super::haste::Haste;
-use super::live::Live;
+use super::live::{Followed, Live};
 use super::panels;
 use super::part::Wanted;
 use super::probe::Found;
@@ -48,7 +47,7 @@ pub enum Done {
     /// A part was brought to the device.
     Built(u64, Wanted, Result<Built>),
     /// What was prepared of a part was brought up to an edit.
-    Edited(u64, Wanted, Result<(Live, Vec<Update>)>),
+    Edited(u64, Wanted, Result<(Live, Followed)>),
     /// Pipelines were made.
     Piped(Key, Result<()>),
     /// A surface was captured.
@@ -111,6 +110,8 @@ pub struct Program {
     live: shaders::Live,
     began: Instant,
     haste: Haste,
+    /// Edits that are not seen yet.
+    asked: Vec<takes::Asked>,
     /// What was brought while a scene was being drawn that it would change.
     waiting: Vec<Done>,
     /// Whether a picture of the window is to be taken, once it shows the full scene.
@@ -195,6 +196,7 @@ impl Program {
             saved_pipelines: 0,
             began: Instant::now(),
             haste: Haste::new(is_software),
+            asked: Vec::new(),
             waiting: Vec::new(),
             shooting: false,
             undrawn: false,

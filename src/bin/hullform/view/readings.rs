@@ -42,6 +42,12 @@ pub struct Readings {
     pub device: Series,
     /// The host's time for a frame, panels included.
     pub host: Series,
+    /// Seconds from an edit to the picture that shows it.
+    pub edits: Series,
+    /// How many were seen so far.
+    pub edited: u64,
+    /// Scenes of which a part was drawn, and the rest had stayed.
+    pub parts: u64,
     /// What the last scene cost.
     pub cost: Cost,
     /// What the device decided for that, where it does.

@@ -1,6 +1,8 @@
 //! What is on the device of the scene, and how a frame draws it.
 
+mod amends;
 mod drawn;
+mod levels;
 mod scene;
 
 use std::sync::Arc;
@@ -11,17 +13,18 @@ use hullform::ash::vk;
 use hullform::gpu::{self, Cut, DrawList, Fill, SurfaceOptions, View};
 use hullform::host::{ColouredTriangles, ColouredVertex, Style, TimestampQuery};
 use hullform::mesh::Model;
-use hullform::method::{DepthTags, Displacement, Prepared, Update};
+use hullform::method::{Displacement, Prepared};
 
 use super::context::{Context, Drawn, Key};
-use super::live::Live;
+use super::live::{Followed, Live};
 use super::overlay::Overlay;
 use super::part::{Part, Wanted};
 use super::viewer::{Beside, Viewer};
 use super::viewport::Area;
-use crate::adaptive::{Adaptive, Seen};
-use crate::eye::Eye;
+use crate::adaptive::Adaptive;
+use crate::eye::{Eye, Sphere};
 use crate::render;
+use amends::Amends;
 use scene::Scene;
 
 /// A part on the device.
@@ -38,6 +41,10 @@ pub struct Staged {
     pub live: Option<Live>,
     /// Which of the part's moves its surfaces have.
     moves: u64,
+    /// Where its vertices are on the device, in local units.
+    placed: Vec<Vec3>,
+    /// What has changed since it was drawn last.
+    amends: Amends,
     /// For what the lists were decided.
     decided: Option<Decision>,
 }
@@ -80,8 +87,12 @@ pub struct Stage {
     timed: bool,
     /// How many vertices the maps and the lines over all have.
     flat: [usize; 3],
+    /// Of which parts the maps are, by side.
+    mapped: Vec<(usize, u64)>,
     /// What is being drawn, until it is whole.
     scene: Option<Scene>,
+    /// At which level the picture is that is whole, and in which sphere all was; None where none is.
+    shown: Option<(f32, Sphere)>,
 }
 
 /// What a frame took.
@@ -105,6 +116,8 @@ impl Staged {
         let Built { model, sides, live } = built;
         Staged {
             number,
+            placed: model.positions(),
+            amends: Amends::default(),
             model,
             wanted,
             sides,
@@ -115,10 +128,15 @@ impl Staged {
     }
 
     /// Brings its surfaces up to an edit: the next frame draws that. Nothing is drawn at this time.
-    pub fn edit(&mut self, live: Live, updates: &[Update], context: &Context) -> Result<()> {
-        for (number, (drawn, update)) in self.sides.iter_mut().zip(updates).enumerate() {
+    pub fn edit(&mut self, live: Live, followed: &Followed, context: &Context) -> Result<()> {
+        let sides = self.sides.iter_mut().zip(&followed.updates);
+        for (number, (drawn, update)) in sides.enumerate() {
+            let (amends, placed) = (&mut self.amends, &self.placed);
+            amends.add_patches(drawn, update, placed);
             drawn.edit(live.side(number), update, context)?;
+            amends.add_patches(drawn, update, placed);
         }
+        self.amends.add_vertices(&followed.vertices, &self.placed);
         self.decided = None;
         self.live = Some(live);
         Ok(())
@@ -142,7 +160,9 @@ impl Stage {
             timer: TimestampQuery::new(device)?,
             timed: false,
             flat: [0; 3],
+            mapped: Vec::new(),
             scene: None,
+            shown: None,
         })
     }
 
@@ -197,7 +217,7 @@ impl Stage {
     /// Takes a part in; what there was of it comes back.
     pub fn put(&mut self, staged: Staged) -> Vec<Staged> {
         let same = |other: &mut Staged| other.number == staged.number;
-        self.scene = None;
+        self.abandon();
         let old = self.parts.extract_if(.., same).collect();
         self.parts.push(staged);
         self.parts.sort_by_key(|staged| staged.number);
@@ -209,7 +229,7 @@ impl Stage {
         let gone = |staged: &mut Staged| !numbers.contains(&staged.number);
         let gone: Vec<Staged> = self.parts.extract_if(.., gone).collect();
         if !gone.is_empty() {
-            self.scene = None;
+            self.abandon();
         }
         gone
     }
@@ -272,6 +292,7 @@ impl Stage {
             staged.decide(viewer, cut, part, context)?;
         }
         let map = |side: usize| overlay.maps.get(side).map_or(0, |map| map.0.len());
+        self.mapped.clone_from(&overlay.mapped);
         self.flat = [map(0), map(1), overlay.vertices.len()];
         let maps = self.maps.iter_mut().zip(&overlay.maps);
         // SAFETY: nothing is drawn at this time, which the caller has asked the canvas.
@@ -350,11 +371,14 @@ impl Staged {
             return Ok(());
         }
         let placement = self.model.placement();
-        let local = |&point: &DVec3| placement.local(point).as_vec3().to_array();
-        let positions: Vec<[f32; 3]> = part.points().iter().map(local).collect();
+        let local = |&point: &DVec3| placement.local(point).as_vec3();
+        let placed: Vec<Vec3> = part.points().iter().map(local).collect();
+        let positions: Vec<[f32; 3]> = placed.iter().map(|place| place.to_array()).collect();
         for drawn in &mut self.sides {
             drawn.surface.write_positions(&positions)?;
+            self.amends.add_moves(drawn, [&self.placed, &placed]);
         }
+        self.placed = placed;
         self.moves = part.moves();
         Ok(())
     }
@@ -385,54 +409,6 @@ impl Staged {
         }
         self.decided = Some(decision);
         Ok(())
-    }
-
-    /// Control vertices as they are shown, in local units.
-    fn places(&self, part: &Part) -> Vec<Vec3> {
-        let placement = self.model.placement();
-        let places = part.points().iter().map(|&p| placement.local(p).as_vec3());
-        match part.points().len() == self.model.mesh().vertex_count() {
-            true => places.collect(),
-            false => self.model.positions(),
-        }
-    }
-
-    /// What the device decides about patches in an area of the window.
-    fn decision(&self, viewer: &Viewer, part: &Part, area: Area, a_pixel: u32) -> gpu::Decision {
-        let seen = cutting_eye(viewer, &self.model, area);
-        let decision = viewer.wanted().decision(&self.places(part), seen, a_pixel);
-        gpu::Decision {
-            // The second view is that of the frozen camera.
-            seen_from: viewer.frozen.map(|_| 1),
-            ..decision
-        }
-    }
-
-    /// A depth for each control vertex, by the camera that cuts.
-    fn tags(&self, viewer: &Viewer, level: f32, part: &Part) -> Result<Option<DepthTags>> {
-        let Some(adaptive) = viewer.cutting.adaptive else {
-            return Ok(None);
-        };
-        let Some(drawn) = self.sides.iter().find(|drawn| !drawn.is_decided_there()) else {
-            return Ok(None);
-        };
-        let seen = cutting_eye(viewer, &self.model, viewer.area);
-        let places = self.places(part);
-        let outline = &drawn.surface.prepared().outline;
-        adaptive.tags(outline, &places, level, seen).map(Some)
-    }
-}
-
-/// From where patches are cut in an area of the window.
-fn cutting_eye(viewer: &Viewer, model: &Model, area: Area) -> Seen {
-    let placement = model.placement();
-    let eye = viewer.cutting_orbit().eye();
-    let view = eye.view(placement, area.aspect(), viewer.sphere());
-    Seen {
-        clip_from_model: view.clip_from_model,
-        eye: view.eye,
-        scale: placement.scale,
-        size: [area.width, area.height].map(|side| side.max(1) as f32),
     }
 }
 

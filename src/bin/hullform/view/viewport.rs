@@ -40,6 +40,23 @@ impl Area {
         }
     }
 
+    /// What of it lies in another one.
+    pub fn and(self, other: Area) -> Area {
+        let both = |a: u32, b: u32, c: u32, d: u32| {
+            let first = a.max(c);
+            let end = a.saturating_add(b).min(c.saturating_add(d));
+            (first, end.saturating_sub(first))
+        };
+        let (x, width) = both(self.x, self.width, other.x, other.width);
+        let (y, height) = both(self.y, self.height, other.y, other.height);
+        Area {
+            x,
+            y,
+            width,
+            height,
+        }
+    }
+
     /// Width over height.
     pub fn aspect(self) -> f64 {
         f64::from(self.width.max(1)) / f64::from(self.height.max(1))

@@ -45,7 +45,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer) {
         }
     });
     heading(ui, "motion");
-    motion(ui, &mut viewer.deform);
+    let time = motion(ui, &mut viewer.deform);
+    viewer.places.insert("time", time);
 }
 
 /// The sharpness of what is picked. A drag of it is one step.
@@ -68,20 +69,23 @@ fn sharpness(ui: &mut Ui, viewer: &mut Viewer) {
     }
 }
 
-fn motion(ui: &mut Ui, deform: &mut Deform) {
+/// The motion; where its time is scrubbed.
+fn motion(ui: &mut Ui, deform: &mut Deform) -> egui::Rect {
     let all = Kind::ALL.map(|kind| (kind, kind.name().to_string()));
     choice(ui, "kind", &mut deform.kind, &all);
     ui.add_enabled_ui(deform.kind != Kind::None, |ui| {
         row(ui, "amount", |ui| {
             ui.add(Slider::new(&mut deform.amount, 0.0..=1.0))
         });
-        row(ui, "time", |ui| {
+        let time = row(ui, "time", |ui| {
             let slider = Slider::new(&mut deform.time, 0.0..=Deform::TURN);
-            ui.add(slider.fixed_decimals(2).suffix(" s"));
+            ui.add(slider.fixed_decimals(2).suffix(" s"))
         });
         let words = if deform.playing { "pause" } else { "play" };
         if ui.small_button(words).clicked() {
-            deform.playing ^= true;
+            deform.play();
         }
-    });
+        time.rect
+    })
+    .inner
 }

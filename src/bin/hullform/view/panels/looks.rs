@@ -50,14 +50,19 @@ fn files(ui: &mut Ui, viewer: &mut Viewer) {
         let list = egui::ComboBox::from_id_salt("files").selected_text(names.join(", "));
         let list = list.width(168.0).truncate();
         let recent = viewer.recent.clone();
-        list.show_ui(ui, |ui| {
+        let shown = list.show_ui(ui, |ui| {
             for path in recent {
                 let shown = viewer.parts.len() == 1 && viewer.parts[0].path() == Some(&path);
-                if ui.selectable_label(shown, path.to_string_lossy()).clicked() {
+                let label = ui.selectable_label(shown, path.to_string_lossy());
+                if !shown {
+                    viewer.places.entry("recent").or_insert(label.rect);
+                }
+                if label.clicked() {
                     viewer.intend(Intent::Open(vec![Some(path)]));
                 }
             }
         });
+        viewer.places.insert("files", shown.response.rect);
     });
     if let Some(command) = chosen {
         viewer.obey(command);

@@ -6,7 +6,14 @@ use hullform::host::Pacing;
 
 use super::super::readings::{Series, bytes, grouped};
 use super::super::viewer::Viewer;
-use super::{Status, choice, heading};
+use super::{Status, heading, row};
+
+/// How pictures follow one another, with what that means.
+pub const PACINGS: [(Pacing, &str, &str); 3] = [
+    (Pacing::Display, "display", "with the display"),
+    (Pacing::Latest, "latest", "the latest at each refresh"),
+    (Pacing::Immediate, "immediate", "at once, perhaps torn"),
+];
 
 /// How many buffers are told.
 const MOST: usize = 8;
@@ -49,6 +56,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, status: &Status<'_>) {
         Color32::from_rgb(222, 140, 86),
     );
     graph(ui, "host", &readings.host, Color32::from_rgb(112, 164, 214));
+    if readings.edits.last().is_some() {
+        let colour = Color32::from_rgb(140, 184, 120);
+        graph(ui, "edit to picture", &readings.edits, colour);
+    }
     heading(ui, "memory");
     let rows = readings.memory.iter().take(MOST);
     table(
@@ -80,13 +91,15 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, status: &Status<'_>) {
     ui.label(RichText::new(words).color(colour));
 }
 
+/// How pictures follow one another: a short choice, all of it to be seen.
 fn pacing(ui: &mut Ui, viewer: &mut Viewer) {
-    let all = [
-        (Pacing::Display, "with the display".to_string()),
-        (Pacing::Latest, "the latest".to_string()),
-        (Pacing::Immediate, "at once".to_string()),
-    ];
-    choice(ui, "frames", &mut viewer.pacing, &all);
+    row(ui, "frames", |ui| {
+        for (pacing, name, words) in PACINGS {
+            let label = ui.selectable_value(&mut viewer.pacing, pacing, name);
+            viewer.places.insert(name, label.rect);
+            label.on_hover_text(words);
+        }
+    });
 }
 
 fn table<'a>(ui: &mut Ui, name: &str, rows: impl Iterator<Item = (&'a str, String)>) {

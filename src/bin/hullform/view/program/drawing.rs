@@ -30,6 +30,17 @@ impl Drawing {
     pub fn legend(&self) -> Option<&Legend> {
         self.legend.as_ref()
     }
+
+    /// Whether it differs from another by edits of the same models, if at all.
+    pub fn is_edited(&self, other: &Drawing) -> bool {
+        let numbers = |all: &[(u64, u64, u64)]| all.iter().map(|part| part.0).collect::<Vec<_>>();
+        let parts = other.parts.clone();
+        numbers(&self.parts) == numbers(&parts)
+            && Drawing {
+                parts,
+                ..self.clone()
+            } == *other
+    }
 }
 
 impl Program {
@@ -86,6 +97,7 @@ impl Program {
                 let Some(map) = measured.map(legend.kind, legend.scale, &view) else {
                     continue;
                 };
+                overlay.mapped.push((side.recipe, staged.number));
                 let first = vertices.len() as u32;
                 vertices.extend(map);
                 let own = measured.surface.triangles.iter();

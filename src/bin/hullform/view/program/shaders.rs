@@ -137,7 +137,7 @@ impl Program {
         let old = self.context.exchange(glsl, pipelines);
         self.workers.let_go(old);
         self.failed = Default::default();
-        self.fresh = true;
+        (self.fresh, self.drawn) = (true, None);
     }
 
     #[cfg(not(feature = "shaderc"))]

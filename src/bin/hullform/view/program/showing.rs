@@ -11,6 +11,7 @@ use super::{Outcome, Program};
 use crate::view::canvas::Panels;
 use crate::view::context::Key;
 use crate::view::haste::Sent;
+use crate::view::overlay::Overlay;
 
 impl Program {
     /// How long until another picture may be due, where there is one that is coarser.
@@ -52,6 +53,7 @@ impl Program {
         let sliced = self.stage.slice(most)?;
         let (full, scene) = (self.viewer.cutting.cut().level, self.stage.scene());
         let is_coarser = scene.is_some_and(|scene| scene.level < full);
+        let is_part = scene.is_some_and(|scene| scene.part.is_some());
         // A picture that is saved is the full one.
         let is_full = sliced.map_or(self.is_whole(), |sliced| sliced.is_last && !is_coarser);
         if self.shooting && is_full {
@@ -78,14 +80,17 @@ impl Program {
                     seconds,
                     is_last: sliced.is_last,
                     is_coarser,
+                    is_part,
                 }),
                 None => self.haste.idle(seconds),
             }
         }
         if let Some(cost) = cost {
             self.readings.frames[1] += 1;
+            self.readings.parts += u64::from(is_part);
             self.readings.cost = cost;
             self.anew = false;
+            self.take_followed();
         }
         let scene = cost.is_some();
         Ok(Outcome { shown, scene })
@@ -136,11 +141,20 @@ impl Program {
         if !(moved || rested) || self.viewer.area.is_empty() {
             return Ok(());
         }
+        let edited = self.drawn.as_ref().is_some_and(|d| drawing.is_edited(d));
+        if edited && !self.fresh && !self.running.edited.is_empty() {
+            // Surfaces follow in a moment, and the cage with them.
+            self.undrawn = true;
+            return Ok(());
+        }
         let full = self.viewer.cutting.cut();
         let overlay = self.overlay(scale, drawing.legend());
         let may_be_coarser = moved && !self.shooting;
         self.drawn = Some(drawing);
         self.fresh = false;
+        if edited && !rested && self.amend(full, &overlay)? {
+            return Ok(());
+        }
         self.canvas.confine(self.viewer.area);
         // Once more where only what was decided shows how much it is.
         for _ in 0..2 {
@@ -162,6 +176,27 @@ impl Program {
             self.haste.begins(work, level >= full.level);
         }
         Ok(())
+    }
+
+    /// Draws what edits have changed of the picture, at the level that it has; whether that is possible, and a frame has time for it.
+    fn amend(&mut self, full: Cut, overlay: &Overlay) -> Result<bool> {
+        let (stage, viewer, context) = (&mut self.stage, &self.viewer, &self.context);
+        let Some(level) = stage.amendable(viewer).filter(|level| *level <= full.level) else {
+            return Ok(false);
+        };
+        let cut = Cut { level, ..full };
+        if let Err(error) = stage.decide(viewer, cut, overlay, context) {
+            return self.fails(error).map(|()| true);
+        }
+        let haste = self.haste;
+        if !stage.amend(viewer, level, |work| haste.is_quick(work), context) {
+            return Ok(false);
+        }
+        if let Some(part) = stage.scene().and_then(|scene| scene.part) {
+            self.canvas.confine(part);
+        }
+        self.haste.begins(0.0, false);
+        Ok(true)
     }
 
     /// Takes a picture of the window by the next frame.

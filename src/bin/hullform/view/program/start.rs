@@ -9,10 +9,11 @@ use hullform::mesh::Model;
 use hullform::plan::Database;
 
 use super::{Done, Program};
+use crate::capture::By;
 use crate::db::database;
 use crate::model;
 use crate::view::context::{Context, Readied, under_scheme};
-use crate::view::errors::{self, Measured, Subject};
+use crate::view::errors::{self, Adapted, Measured, Subject};
 use crate::view::live::Live;
 use crate::view::part::{Part, Wanted};
 use crate::view::readings::grouped;
@@ -35,6 +36,7 @@ impl Program {
             self.workers.let_go(gone);
         }
         self.deform();
+        self.note_edits();
         for place in 0..self.viewer.parts.len() {
             self.read(place)?;
             self.build(place)?;
@@ -217,7 +219,19 @@ impl Program {
             recipe: *staged.wanted.recipes.get(side)?,
             shaders: self.context.shaders().version,
             cut: self.viewer.cutting.cut(),
-            tags: None,
+            adapted: self.adapted(side),
+        })
+    }
+
+    /// By what the levels of a side differ.
+    fn adapted(&self, recipe: usize) -> Option<Adapted> {
+        let sides = Stage::sides(&self.viewer);
+        let area = sides.iter().find(|side| side.recipe == recipe)?.viewport;
+        Some(Adapted {
+            by: self.viewer.cutting.adaptive?,
+            orbit: self.viewer.cutting_orbit(),
+            size: [area.width, area.height],
+            all: self.viewer.sphere(),
         })
     }
 
@@ -273,7 +287,10 @@ impl Program {
                 None if staged.vertices(side) > GREATEST_MEASURED => {
                     return self.is_too_fine(subject);
                 }
-                None => return self.start_measure(subject),
+                None => {
+                    let by = staged.levels_by(&self.viewer, side, &self.context)?;
+                    return self.start_measure(subject, by);
+                }
             }
         }
         Ok(())
@@ -303,7 +320,7 @@ impl Program {
         self.workers.start("keep", work, |_| Done::Kept)
     }
 
-    fn start_measure(&mut self, subject: Subject) -> Result<()> {
+    fn start_measure(&mut self, subject: Subject, by: By) -> Result<()> {
         let parts = &self.viewer.parts;
         let part = parts.iter().find(|part| part.number() == subject.part);
         let Some((part, history)) = part.and_then(|part| Some((part, part.history()?))) else {
@@ -314,7 +331,7 @@ impl Program {
         self.running.measured = Some(subject.clone());
         let (how, asked) = (self.shape.triangulate, subject.clone());
         let work = move |entrance: &Entrance<Context>| {
-            errors::measure(entrance, &draft, how, asked).map(Arc::new)
+            errors::measure(entrance, &draft, how, asked, by).map(Arc::new)
         };
         let told = move |result| Done::Measured(Box::new(subject), result);
         self.workers.start("measure", work, told)

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::Program;
 use crate::view::command::SHADINGS;
+use crate::view::panels::PACINGS;
 use crate::view::part::Part;
 use crate::view::readings::{Fact, bytes, grouped};
 use crate::view::stage::Staged;
@@ -46,10 +47,15 @@ impl Program {
             ),
             ("workarounds", workarounds),
             ("window", format!("{width} x {height}")),
-            ("presents", format!("{:?}", self.canvas.mode())),
+            ("presents", self.presents()),
         ]
         .map(|(name, value)| (name.to_string(), value))
         .into();
+    }
+
+    /// How pictures follow one another, as Vulkan names it.
+    fn presents(&self) -> String {
+        format!("{:?}", self.canvas.mode())
     }
 
     /// Bytes on the device by what they are for, the greatest first.
@@ -74,6 +80,8 @@ impl Program {
             .map(|(name, place)| (name.to_string(), json!(rect(place))));
         let places: serde_json::Map<String, Value> = places.collect();
         let (orbit, area) = (viewer.orbit, viewer.area);
+        let mut pacings = PACINGS.into_iter();
+        let pacing = pacings.find(|(pacing, ..)| *pacing == viewer.pacing);
         let memory: u64 = self.readings.memory.iter().map(|(_, size)| size).sum();
         json!({
             "seconds": self.began.elapsed().as_secs_f64(),
@@ -112,9 +120,12 @@ impl Program {
                 "faces": viewer.selection.faces,
             },
             "models": self.models(),
+            "edits": { "seen": self.readings.edited, "seconds": self.readings.edits.last(), "parts": self.readings.parts },
             "motion": {
                 "kind": viewer.deform.kind.name(), "time": viewer.deform.time, "playing": viewer.deform.playing,
             },
+            "recent": viewer.recent,
+            "pacing": [pacing.map(|(_, name, _)| name), self.presents()],
             "sheet": viewer.sheet,
             "panels": viewer.panels,
             "notice": viewer.notices.last().map(|notice| notice.words.clone()),

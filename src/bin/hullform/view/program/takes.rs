@@ -1,11 +1,12 @@
 //! What workers have brought, and files that have changed.
 
+use std::time::Instant;
+
 use hullform::mesh::ControlMesh;
-use hullform::method::Update;
 use hullform::{Error, Result};
 
 use super::{Done, Program};
-use crate::view::live::Live;
+use crate::view::live::{Followed, Live};
 use crate::view::part::Wanted;
 use crate::view::stage::{Built, Staged};
 use crate::view::watch;
@@ -109,6 +110,7 @@ impl Program {
 
     fn take_mesh(&mut self, number: u64, result: Result<ControlMesh>) {
         self.running.read.retain(|other| *other != number);
+        self.asked.retain(|asked| asked.part != number);
         let Some(part) = self
             .viewer
             .parts
@@ -176,7 +178,7 @@ impl Program {
         &mut self,
         number: u64,
         wanted: Wanted,
-        result: Result<(Live, Vec<Update>)>,
+        result: Result<(Live, Followed)>,
     ) -> Result<()> {
         let before = self.running.edited.extract_if(.., |(of, _)| *of == number);
         let Some((_, before)) = before.last() else {
@@ -187,12 +189,12 @@ impl Program {
         let Some(staged) = parts.find(same) else {
             return Ok(());
         };
-        let edited = result.and_then(|(live, updates)| {
+        let edited = result.and_then(|(live, followed)| {
             // Where it takes other tables, all is prepared anew.
-            match updates.iter().any(|update| update.is_whole) {
+            match followed.updates.iter().any(|update| update.is_whole) {
                 true => Ok(()),
                 false => {
-                    staged.edit(live, &updates, &self.context)?;
+                    staged.edit(live, &followed, &self.context)?;
                     staged.wanted = wanted;
                     let mut parts = self.viewer.parts.iter_mut();
                     let part = parts.find(|part| part.number() == number);
@@ -212,6 +214,55 @@ impl Program {
             Ok(()) => Ok(()),
         }
     }
+}
+
+impl Program {
+    /// Notes edits that are asked for, from now on.
+    pub(super) fn note_edits(&mut self) {
+        for part in &self.viewer.parts {
+            let Some(history) = part.history() else {
+                continue;
+            };
+            let (number, topology) = (part.number(), history.topology());
+            let of = |asked: &&Asked| asked.part == number;
+            let last = self.asked.iter().rev().find(of).map(|asked| asked.topology);
+            let staged = self
+                .stage
+                .parts
+                .iter()
+                .find(|staged| staged.number == number);
+            let shown = staged.map(|staged| staged.wanted.version[1]);
+            if last.or(shown).is_some_and(|known| known != topology) {
+                let when = Instant::now();
+                self.asked.push(Asked {
+                    part: number,
+                    topology,
+                    when,
+                });
+            }
+        }
+    }
+
+    /// Takes down how long edits took that are in the scene that is whole now.
+    pub(super) fn take_followed(&mut self) {
+        let stage = &self.stage;
+        let seen = |asked: &mut Asked| {
+            let mut all = stage.parts.iter();
+            let staged = all.find(|staged| staged.number == asked.part);
+            staged.is_none_or(|staged| staged.wanted.version[1] >= asked.topology)
+        };
+        for asked in self.asked.extract_if(.., seen) {
+            self.readings.edits.add(asked.when.elapsed().as_secs_f64());
+            self.readings.edited += 1;
+        }
+    }
+}
+
+/// An edit that is asked for and not seen yet.
+pub(super) struct Asked {
+    part: u64,
+    topology: u64,
+    when: Instant,
 }
 
 impl Done {

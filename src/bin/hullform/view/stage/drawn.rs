@@ -10,9 +10,25 @@ use hullform::host::Owned;
 use hullform::method::{Editable, Update};
 
 use super::Cost;
+use super::scene::is_chosen;
 use crate::view::context::{Context, Drawn, Growth};
 
+/// Some of a list's batches.
+pub(super) struct Batches<'a> {
+    /// From which to which.
+    pub range: Range<usize>,
+    /// Which of these, where not all are.
+    pub chosen: Option<&'a Arc<[bool]>>,
+}
+
 impl Drawn {
+    /// The vertices of batches that are chosen.
+    pub(super) fn vertices_of(&self, chosen: &[bool]) -> u64 {
+        let batches = self.list.iter().flat_map(|list| list.batches());
+        let chosen = batches.zip(chosen).filter(|(_, chosen)| **chosen);
+        chosen.map(|(batch, _)| u64::from(batch.vertices())).sum()
+    }
+
     /// Whether the device decides about its patches.
     pub fn is_decided_there(&self) -> bool {
         self.surface.options().decides == Decides::Device
@@ -100,7 +116,7 @@ impl Drawn {
         cmd: vk::CommandBuffer,
         context: &Context,
         round: u32,
-        range: Range<usize>,
+        batches: Batches<'_>,
         pipelines: &Arc<Owned<Pipelines>>,
         cost: &mut Cost,
     ) -> Result<()> {
@@ -108,8 +124,10 @@ impl Drawn {
             return Ok(());
         };
         let (device, layout) = (context.device().raw(), context.layout());
-        let batches = list.round(round)?.skip(range.start);
-        for batch in batches.take(range.len()) {
+        let Batches { range, chosen } = batches;
+        let batches = list.round(round)?.enumerate().skip(range.start);
+        let batches = batches.take(range.len());
+        for (_, batch) in batches.filter(|(number, _)| is_chosen(chosen, *number)) {
             let first = batch.points() > 0 && batch.ring_batch() == 0;
             // SAFETY: this function's contract; the target's pass allows the barrier.
             unsafe {

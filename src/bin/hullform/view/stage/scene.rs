@@ -7,7 +7,10 @@ use hullform::ash::vk;
 use hullform::gpu::{self, Batch, Decision, Pipelines, View, ring};
 use hullform::host::{OffscreenTarget, Owned, Slice};
 
+use super::amends::Amended;
+use super::drawn::Batches;
 use super::{Cost, Side, Stage, Staged, cmd_look, style, view};
+use crate::eye::Sphere;
 use crate::render;
 use crate::view::context::{Context, Drawn};
 use crate::view::viewer::Viewer;
@@ -26,6 +29,9 @@ pub struct Scene {
     pub area: Area,
     /// What it has taken so far.
     pub cost: Cost,
+    /// The part that is drawn, where the rest of the picture stays.
+    pub part: Option<Area>,
+    all: Sphere,
     sides: Vec<Side>,
     views: Vec<Seen>,
     steps: Vec<Step>,
@@ -59,7 +65,14 @@ enum What {
         part: usize,
         round: u32,
         pipelines: Arc<Owned<Pipelines>>,
+        /// Which of them, where not all are.
+        chosen: Option<Arc<[bool]>>,
     },
+}
+
+/// Whether a batch is drawn.
+pub(super) fn is_chosen(chosen: Option<&Arc<[bool]>>, batch: usize) -> bool {
+    chosen.is_none_or(|all| all.get(batch).copied().unwrap_or(true))
 }
 
 /// How far it is drawn: a step, and a batch of that.
@@ -81,10 +94,27 @@ pub struct Sliced {
 impl Stage {
     /// Begins a scene of what was decided, in the place of one that is not whole. What has no pipelines yet is not drawn.
     pub fn begin(&mut self, viewer: &Viewer, level: f32, context: &Context) {
-        let sides = Stage::sides(viewer);
+        self.begin_of(viewer, level, None, context);
+    }
+
+    /// The same, of a part of the picture or all of it.
+    pub(super) fn begin_of(
+        &mut self,
+        viewer: &Viewer,
+        level: f32,
+        amended: Option<&Amended>,
+        context: &Context,
+    ) {
+        let mut sides = Stage::sides(viewer);
+        let part = amended.map(|amended| amended.area);
+        for side in &mut sides {
+            side.scissor = part.map_or(side.scissor, |part| side.scissor.and(part));
+        }
         let mut scene = Scene {
             level,
             area: viewer.area,
+            part,
+            all: viewer.sphere(),
             cost: Cost::default(),
             views: Vec::new(),
             steps: Vec::new(),
@@ -103,10 +133,15 @@ impl Stage {
                     recipe: side.recipe,
                     ..staged.seen(viewer, drawn, side.viewport, context)
                 });
-                if viewer.compare.map.is_some() {
+                // What is not measured yet is seen as it is.
+                if self.mapped.contains(&(side.recipe, staged.number)) {
                     continue;
                 }
-                scene.cost.vertices += drawn.vertices;
+                let chosen = amended.map(|amended| amended.batches[part][side.recipe].clone());
+                scene.cost.vertices += match &chosen {
+                    Some(chosen) => drawn.vertices_of(chosen),
+                    None => drawn.vertices,
+                };
                 for (round, fill) in (0..).zip(Stage::fills(viewer)) {
                     let key = drawn.key(style(drawn, viewer, fill));
                     if let Some(pipelines) = context.ready_or_like(&key) {
@@ -114,16 +149,22 @@ impl Stage {
                             part,
                             round,
                             pipelines,
+                            chosen: chosen.clone(),
                         }));
                     }
                 }
             }
-            if viewer.compare.map.is_some() {
+            if self.mapped.iter().any(|(recipe, _)| *recipe == side.recipe) {
                 scene.steps.push(step(What::Map));
             }
             scene.steps.push(step(What::Overlay));
         }
         self.scene = Some(scene);
+        // Until it is whole there is none.
+        self.shown = None;
+        self.parts
+            .iter_mut()
+            .for_each(|staged| staged.amends.clear());
     }
 
     /// Whether a scene is begun and not whole.
@@ -136,9 +177,9 @@ impl Stage {
         self.scene.as_ref()
     }
 
-    /// Leaves a scene that is not whole.
+    /// Leaves a scene that is not whole, and whatever the picture shows.
     pub fn abandon(&mut self) {
-        self.scene = None;
+        (self.scene, self.shown) = (None, None);
     }
 
     /// What the next frame draws of the scene: something, and no more than so much work if that can be helped.
@@ -180,6 +221,7 @@ impl Stage {
         scene.at = scene.end;
         scene.cost.host += started.elapsed().as_secs_f64();
         if scene.at.step == scene.steps.len() {
+            self.shown = Some((scene.level, scene.all));
             return Ok(Some(scene.cost));
         }
         self.scene = Some(scene);
@@ -227,7 +269,12 @@ impl Stage {
                         part,
                         round,
                         pipelines,
+                        chosen,
                     } => {
+                        let batches = Batches {
+                            range: batches,
+                            chosen: chosen.as_ref(),
+                        };
                         let drawn = &self.parts[*part].sides[recipe];
                         let cost = &mut scene.cost;
                         drawn.cmd_batches(cmd, context, *round, batches, pipelines, cost)?;
@@ -278,7 +325,7 @@ impl Staged {
 }
 
 /// What a batch takes, in vertices.
-fn work_of(batch: Batch<'_>) -> f64 {
+pub(super) fn work_of(batch: Batch<'_>) -> f64 {
     f64::from(batch.vertices()) + POINT * f64::from(batch.points())
 }
 
@@ -286,13 +333,22 @@ impl Scene {
     /// Decides what the next frame draws.
     fn plan(&mut self, stage: &Stage, most: f64) -> Result<Sliced> {
         let (mut work, mut end) = (0.0, self.at);
+        let most = self.part.map_or(most, |_| f64::INFINITY);
         'steps: while let Some(step) = self.steps.get(end.step) {
             let recipe = self.sides[step.side].recipe;
-            match step.what {
-                What::Surface { part, round, .. } => {
-                    if let Some(list) = &stage.parts[part].sides[recipe].list {
-                        for batch in list.round(round)?.skip(end.batch) {
-                            let own = work_of(batch);
+            match &step.what {
+                What::Surface {
+                    part,
+                    round,
+                    chosen,
+                    ..
+                } => {
+                    if let Some(list) = &stage.parts[*part].sides[recipe].list {
+                        for batch in list.round(*round)?.skip(end.batch) {
+                            let own = match is_chosen(chosen.as_ref(), end.batch) {
+                                true => work_of(batch),
+                                false => 0.0,
+                            };
                             if work > 0.0 && work + own > most {
                                 break 'steps;
                             }
@@ -318,19 +374,28 @@ impl Scene {
 
     /// The work that all of it is.
     pub fn work(&self, parts: &[Staged]) -> f64 {
-        let steps = self.steps.iter().filter_map(|step| match step.what {
-            What::Surface { part, round, .. } => {
-                let drawn = &parts[part].sides[self.sides[step.side].recipe];
-                drawn.list.as_ref()?.round(round).ok()
+        let steps = self.steps.iter().filter_map(|step| match &step.what {
+            What::Surface {
+                part,
+                round,
+                chosen,
+                ..
+            } => {
+                let drawn = &parts[*part].sides[self.sides[step.side].recipe];
+                let batches = drawn.list.as_ref()?.round(*round).ok()?.enumerate();
+                Some(batches.filter(|(number, _)| is_chosen(chosen.as_ref(), *number)))
             }
             _ => None,
         });
-        steps.flatten().map(work_of).sum()
+        steps.flatten().map(|(_, batch)| work_of(batch)).sum()
     }
 
     /// Which slice of the picture comes next.
     fn kind(&self) -> Slice {
         let is_first = self.at == Cursor::default();
+        if self.part.is_some() {
+            return Slice::Part;
+        }
         match (is_first, self.end.step == self.steps.len()) {
             (true, true) => Slice::Whole,
             (true, false) => Slice::First,

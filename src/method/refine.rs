@@ -1,7 +1,7 @@
 //! `refine`: uniform refinement on the device, as it was done before there were tessellators and is done again (Shiue, Jones, Peters 2005, "A realtime GPU subdivision
 //! kernel"; Dupuy, Vanhoey 2021, "A halfedge refinement rule for parallel Catmull-Clark subdivision"): a compute pass a level writes all vertices of the next
 //! level, and the faces of the last are drawn as they are. The memory-bound alternative: each vertex of each level is written and read again, and nothing is
-//! evaluated. Both papers find what a vertex is summed from by walking half-edges in each frame; here a table has it, made once a topology, which is more to read and less
+//! evaluated. What a vertex is summed from is found by walking half-edges in each frame (2021); here a table has it, made once a topology, which is more to read and less
 //! to compute. Vertices of the last level are moved to the limit, and have the normal of the faces around them.
 //!
 //! Patches are faces of the last level, so by default tess levels say nothing: what is drawn is as fine as [`IsolationOptions::level`]. With the back-end `pattern`

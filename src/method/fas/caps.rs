@@ -4,7 +4,7 @@
 //! at a boundary and between infinite creases it has the limit's tangent plane, with tangents as Gregory patches have them (Loop, Schaefer, Ni, Castaño 2009), one
 //! along each edge for both faces; inside it has the point of Loop, Schaefer 2008. At corners, darts and what is still semi-sharp edges leave as they do in the mesh.
 //!
-//! Gregory caps have two points inside of each corner, one for each edge there (2009, equation 16): (c1 p + (3 - 2 c0 - c1) e + 2 c0 e' + r) / 3. Beside a B-spline
+//! Gregory caps have two points inside of each corner, one for each edge there (Loop, Schaefer, Ni, Castaño 2009): (c1 p + (3 - 2 c0 - c1) e + 2 c0 e' + r) / 3. Beside a B-spline
 //! both cosines are 0, and it is the B-spline's own point. On edges that are not smooth, or whose ends have no plane, both are the bicubic one.
 //!
 //! B-spline caps: of the sixteen points of the B-spline that a face with one extraordinary vertex inside would be, the mesh lacks the one opposite to the face, x.

@@ -183,7 +183,7 @@ pub const FIGURES: &[Figure] = &[
                     Agrees::AtMost(1.25),
                 ),
             ],
-            "points of feature-adaptive subdivision come from one factorised table here, where OpenSubdiv computes all of a level from the one before; DFAS and OpenSubdiv are not in the library, and Stirling is not public",
+            "DFAS and OpenSubdiv are not in the library, and Stirling is not public",
         ),
     ),
     figure(

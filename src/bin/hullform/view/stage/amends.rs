@@ -260,6 +260,8 @@ fn meets([low, high]: [Vec2; 2], area: Area) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec4;
+
     use super::*;
 
     const WINDOW: Area = Area {
@@ -291,7 +293,8 @@ mod tests {
     #[test]
     fn what_lies_behind_the_eye_is_anywhere_and_what_touches_meets() {
         let lens = Lens {
-            clip: Mat4::perspective_rh(1.0, 2.0, 0.1, 10.0),
+            // The eye looks along -z: w is the distance before it.
+            clip: Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::NEG_W, Vec4::Z),
             viewport: WINDOW,
         };
         let ahead = lens.frame([Vec3::NEG_Z].into_iter()).expect("it is seen");

@@ -314,9 +314,13 @@ impl Staged {
             views: views.collect(),
             decision: decided.map(|part| {
                 let decision = self.decision(viewer, part, area, samples);
+                // What is shown may be older than what is wanted, and have its cracks amplified: then no patch may be left out.
+                let whole = drawn.surface.options().amplify_cracks;
                 gpu::Decision {
+                    frustum: decision.frustum && !whole,
+                    back: decision.back && !whole,
                     // Whoever has samples in places of its own shows what is between the usual ones.
-                    small: decision.small.filter(|_| has_standard_samples),
+                    small: decision.small.filter(|_| has_standard_samples && !whole),
                     ..decision
                 }
             }),

@@ -4,13 +4,14 @@ use std::borrow::Cow;
 
 use rustc_hash::FxHashMap;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::plan::base::{Bases, UNUSED};
 use crate::plan::configuration::{Configuration, Ring};
+use crate::plan::growth::{Leaf, quarter};
 use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
-use crate::plan::quarter::{Leaf, Quarter};
+use crate::plan::options::PlanOptions;
 use crate::plan::required::{require, require_stretch};
 use crate::plan::rows::Rows;
 use crate::plan::span::Span;
@@ -19,45 +20,6 @@ use crate::plan::stencils::Stencils;
 use crate::plan::strip::{self, Strip};
 use crate::plan::tree::{Node, Tree};
 use crate::subdivision::{ControlPoint, Mask, is_plain_edge};
-
-/// How plans are built.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct PlanOptions {
-    /// The deepest level, 1..=10. Tess factors up to 2^max_level are evaluated exactly.
-    pub max_level: u32,
-    /// Whether single semi-sharp creases are evaluated directly (Brainerd et al. 2016, section 6.2) or refined away.
-    pub direct_creases: bool,
-}
-
-impl Default for PlanOptions {
-    /// Level 6 for Vulkan's greatest tess level of 64, creases evaluated directly.
-    fn default() -> PlanOptions {
-        PlanOptions {
-            max_level: 6,
-            direct_creases: true,
-        }
-    }
-}
-
-impl PlanOptions {
-    /// The highest `max_level`.
-    pub const HIGHEST_LEVEL: u32 = 10;
-
-    /// Checks the range of `max_level`.
-    ///
-    /// # Errors
-    /// [`Error::Option`] when it is not in 1..=10.
-    pub fn check(self) -> Result<PlanOptions> {
-        if (1..=Self::HIGHEST_LEVEL).contains(&self.max_level) {
-            return Ok(self);
-        }
-        Err(Error::Option {
-            option: "--max-level",
-            problem: format!("{} is out of range", self.max_level),
-            remedy: "give a level of 1 to 10; 6 serves every tess level of Vulkan".into(),
-        })
-    }
-}
 
 /// The plan of a configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -221,7 +183,7 @@ impl Builder {
 
     /// What is below a quarter. Its points are relative to the limit at its corner.
     fn quarter(&mut self, level: &Level<'_>, corner: u32, steps: &Steps) -> Tree {
-        let (quarter, placed) = Quarter::of(level, corner, self.options, steps);
+        let (quarter, placed) = quarter(level, corner, self.options, steps);
         let first = self.rows.len() as u32;
         for mask in quarter.masks(&placed) {
             self.rows.push(|row| level.rows.add_to(row, &mask));

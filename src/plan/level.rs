@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use rustc_hash::FxHashMap;
 
 use crate::mesh::topology::Topology;
-use crate::plan::builder::PlanOptions;
 use crate::plan::configuration::Configuration;
+use crate::plan::options::PlanOptions;
 use crate::plan::quarter::Quarter;
 use crate::plan::rows::Rows;
 use crate::plan::stencil_rows::KnownRows;
@@ -105,7 +105,7 @@ pub struct Steps {
     pub(super) rounded: bool,
     known: Kept<Box<[u32]>, Step>,
     /// Quarters of faces.
-    quarters: Kept<(PlanOptions, Configuration), Quarter>,
+    pub(super) quarters: Kept<(PlanOptions, Configuration), Quarter>,
     /// Limits of corners, over the vertices of their rings.
     limits: Kept<Configuration, Vec<f64>>,
     /// Memory for rows, which one plan after another uses.
@@ -215,19 +215,6 @@ impl Steps {
         self.known.keep(key.into(), Step::new(kind, refine()))
     }
 
-    /// What is below a quarter with these surroundings.
-    pub(super) fn quarter(&self, of: Configuration, options: PlanOptions) -> Arc<Quarter> {
-        let key = (options, of);
-        if let Some(known) = self.quarters.get(&key) {
-            return known;
-        }
-        let quarter = Quarter::grow(&key.1, options, self);
-        if quarter.is_large() {
-            return quarter.into();
-        }
-        self.quarters.keep(key, quarter)
-    }
-
     /// The limit at the vertex whose ring it is: a weight for each vertex of the ring.
     pub(super) fn limit(&self, of: Configuration) -> Arc<Vec<f64>> {
         if let Some(known) = self.limits.get(&of) {
@@ -250,7 +237,7 @@ impl Steps {
 }
 
 /// What was made once, up to a number of things; then it begins anew.
-struct Kept<K, V>(RefCell<FxHashMap<K, Arc<V>>>);
+pub(super) struct Kept<K, V>(RefCell<FxHashMap<K, Arc<V>>>);
 
 impl<K, V> Default for Kept<K, V> {
     fn default() -> Self {
@@ -259,14 +246,14 @@ impl<K, V> Default for Kept<K, V> {
 }
 
 impl<K: Eq + Hash, V> Kept<K, V> {
-    fn get<Q: Eq + Hash + ?Sized>(&self, key: &Q) -> Option<Arc<V>>
+    pub fn get<Q: Eq + Hash + ?Sized>(&self, key: &Q) -> Option<Arc<V>>
     where
         K: Borrow<Q>,
     {
         self.0.borrow().get(key).cloned()
     }
 
-    fn keep(&self, key: K, value: V) -> Arc<V> {
+    pub fn keep(&self, key: K, value: V) -> Arc<V> {
         let value = Arc::new(value);
         let mut known = self.0.borrow_mut();
         if known.len() == MOST {

@@ -4,9 +4,10 @@ use rustc_hash::FxHashMap;
 
 use crate::error::Result;
 use crate::mesh::topology::Topology;
-use crate::plan::builder::{Plan, PlanOptions};
+use crate::plan::builder::Plan;
 use crate::plan::configuration::Configuration;
 use crate::plan::level::{Level, Steps};
+use crate::plan::options::PlanOptions;
 use crate::plan::rows::Rows;
 use crate::plan::stencils::Stencils;
 use crate::plan::sums::Sums;

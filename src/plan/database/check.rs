@@ -2,7 +2,7 @@
 
 use crate::plan::builder::Plan;
 use crate::plan::database::entry::{Entry, Key, Kind};
-use crate::plan::quarter::DEEPEST;
+use crate::plan::growth::DEEPEST;
 use crate::plan::strip::{Crease, Strip};
 use crate::plan::tree::Node;
 

@@ -1,10 +1,11 @@
 //! What a database has: plans of all kinds, and what each is for.
 
 use crate::error::Result;
-use crate::plan::builder::{Plan, PlanOptions};
+use crate::plan::builder::Plan;
 use crate::plan::configuration::Configuration;
 use crate::plan::edge::{EdgeKind, EdgePlan};
 use crate::plan::level::Steps;
+use crate::plan::options::PlanOptions;
 use crate::plan::vertex::{Side, VertexKind, VertexPlan};
 
 /// What a plan is for.

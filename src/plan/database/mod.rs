@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::error::{Error, Result};
-use crate::plan::builder::PlanOptions;
 use crate::plan::configuration::Configuration;
 use crate::plan::level::StepsPool;
+use crate::plan::options::PlanOptions;
 use crate::plan::row_pool::SharedPool;
 use crate::plan::stencils::Stencils;
 

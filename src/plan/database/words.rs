@@ -5,12 +5,13 @@
 use smallvec::SmallVec;
 
 use crate::abi;
-use crate::plan::builder::{Plan, PlanOptions};
+use crate::plan::builder::Plan;
 use crate::plan::configuration::Configuration;
 use crate::plan::database::check;
 use crate::plan::database::entry::{Entry, Key, Kind};
 use crate::plan::edge::EdgePlan;
 use crate::plan::lists::Lists;
+use crate::plan::options::PlanOptions;
 use crate::plan::stencil_rows::StencilRows;
 use crate::plan::stencils::Stencils;
 use crate::plan::strip::{Crease, Stretch, Strip};

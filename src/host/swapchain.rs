@@ -153,6 +153,8 @@ impl Swapchain {
     /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
+        // Whatever fails below, it is due again.
+        self.stale = true;
         let physical = self.device.info().physical;
         let (functions, surface) = (&self.surface.functions, self.surface.raw);
         // SAFETY: device and surface are of one instance, here and below.

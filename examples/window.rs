@@ -1,9 +1,11 @@
 //! The shortest honest program with a window: a surface that turns, drawn when the display is ready for it.
 //!
-//!     cargo run --release --example window
+//!     cargo run --release --example window [-- FRAMES]
 //!
+//! It ends when the window is closed, or after so many frames.
 //! `src/bin/hullform/view` is the long one: panels, models that are prepared beside the window, and a window that may come and go.
 
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use hullform::ash::vk;
@@ -11,7 +13,7 @@ use hullform::glam::Vec3;
 use hullform::gpu::{Cut, DrawList, Fill, Pipelines, Shading, SurfaceOptions, View};
 use hullform::gpu::{Layout, TessellatedSurface};
 use hullform::host::{Area, Device, Instance, OffscreenTarget, Owned, Pacing, Style};
-use hullform::host::{Swapchain, WindowSurface};
+use hullform::host::{Shown, Swapchain, WindowSurface};
 use hullform::mesh::{Model, builtin};
 use hullform::method::{Displacement, MethodOptions, method_for};
 use hullform::tessellation::Spacing;
@@ -23,8 +25,22 @@ use winit::window::{Window, WindowId};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-fn main() -> Result<()> {
-    let mut app = App::default();
+fn main() -> ExitCode {
+    let Err(error) = run() else {
+        return ExitCode::SUCCESS;
+    };
+    eprintln!("window: {error}");
+    ExitCode::FAILURE
+}
+
+fn run() -> Result<()> {
+    let mut app = App {
+        frames: match std::env::args().nth(1) {
+            Some(frames) => frames.parse()?,
+            None => u32::MAX,
+        },
+        ..App::default()
+    };
     EventLoop::new()?.run_app(&mut app)?;
     app.result.unwrap_or(Ok(()))
 }
@@ -32,6 +48,8 @@ fn main() -> Result<()> {
 #[derive(Default)]
 struct App {
     open: Option<Open>,
+    /// How many are left to be shown.
+    frames: u32,
     result: Option<Result<()>>,
 }
 
@@ -62,9 +80,13 @@ impl ApplicationHandler for App {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        let drawn = self.open.as_mut().map(Open::draw);
-        if let Some(Err(error)) = drawn {
-            self.end(events, Err(error));
+        match self.open.as_mut().map(Open::draw) {
+            Some(Ok(true)) => self.frames = self.frames.saturating_sub(1),
+            Some(Err(error)) => self.end(events, Err(error)),
+            _ => {}
+        }
+        if self.frames == 0 {
+            self.end(events, Ok(()));
         }
         // The display sets the pace; the host looks after it now and then, and never waits.
         let soon = Instant::now() + Duration::from_millis(2);
@@ -95,8 +117,9 @@ impl Open {
         let instance = Instance::with_extensions(false, &names.collect::<Vec<_>>())?;
         // SAFETY: the instance has the extensions of this display; the window outlives the surface.
         let raw = unsafe {
-            ash_window::create_surface(instance.entry(), instance.raw(), display, handle, None)?
+            ash_window::create_surface(instance.entry(), instance.raw(), display, handle, None)
         };
+        let raw = raw.map_err(|code| format!("no surface for the window: {code:?}"))?;
         // SAFETY: it was just made from this instance.
         let window_surface = unsafe { WindowSurface::new(&instance, raw) };
         let device = Device::open_for(&instance, None, &window_surface)?;
@@ -156,14 +179,14 @@ impl Open {
         })
     }
 
-    /// Draws a frame, if the one before it is done.
-    fn draw(&mut self) -> Result<()> {
+    /// Draws a frame, if the one before it is done; whether it did.
+    fn draw(&mut self) -> Result<bool> {
         let size = <[u32; 2]>::from(self.window.inner_size());
         let extent = self.swapchain.extent();
         if self.swapchain.is_stale() || size != [extent.width, extent.height] {
             self.swapchain.resize(size)?;
             if self.swapchain.extent().width == 0 {
-                return Ok(());
+                return Ok(false);
             }
             // Pipelines stay what they are: the pass of the new target is compatible with that of the old.
             self.target = target(&self.swapchain)?;
@@ -177,8 +200,8 @@ impl Open {
             layout,
             ..
         } = self;
-        // Whatever comes of it, the next call sees to it.
-        self.swapchain.frame(|swapchain, cmd, image| {
+        // Where the window has changed meanwhile, the next call sees to it.
+        let shown = self.swapchain.frame(|swapchain, cmd, image| {
             let device = swapchain.device().raw();
             // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for; all of it lives until the frame is done.
             unsafe {
@@ -194,7 +217,7 @@ impl Open {
             }
             Ok(())
         })?;
-        Ok(())
+        Ok(matches!(shown, Shown::Yes))
     }
 
     /// What is seen now: the model turns once in twelve seconds.

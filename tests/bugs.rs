@@ -9,7 +9,7 @@ use std::process::Command;
 use common::cli::{has_device, run};
 
 /// A page, and the case that shows its fault.
-const PAGES: [(&str, &str); 5] = [
+const PAGES: [(&str, &str); 6] = [
     (
         "vertices_per_batch",
         "scale.vertices_per_batch.draw-16_patches-level_64-1_points",
@@ -27,6 +27,10 @@ const PAGES: [(&str, &str); 5] = [
         "barriers.patch_components.4_invocations-1_patches",
     ),
     ("loop_exits", "loops.control.tested_last"),
+    (
+        "query_without_pipeline",
+        "statistics.begun.constants_pushed",
+    ),
 ];
 
 /// Builds a program of one file; None where there is no compiler or no header of Vulkan.

@@ -25,3 +25,8 @@ pub mod patch_components {
 pub mod loop_exits {
     #![doc = include_str!("bugs/loop_exits.md")]
 }
+
+/// A query begins before a pipeline is bound, and the process ends.
+pub mod query_without_pipeline {
+    #![doc = include_str!("bugs/query_without_pipeline.md")]
+}

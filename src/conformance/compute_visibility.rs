@@ -2,8 +2,6 @@
 //!
 //! As where points are computed beforehand. Each case says in another way what must be visible, round after round over the same memory, so that a draw must also be done with it
 //! before the next round is stored. A seeded fault says it not at all, which synchronization validation tells, and expects another round.
-//!
-//! The group is the last: llvmpipe of Mesa 22.3 ends the process where a query of pipeline statistics follows a dispatch.
 
 use ash::vk;
 

@@ -250,7 +250,8 @@ impl<'a> Raw<'a> {
         self.submit_all(None, before, draws)
     }
 
-    fn submit_all(
+    /// The same, of which `query` counts what the draws do: it begins before them.
+    pub fn submit_all(
         &self,
         query: Option<&StatisticsQuery>,
         before: impl FnOnce(&Recorder<'_>),

@@ -8,11 +8,12 @@ use crate::conformance::capture::{
 };
 use crate::conformance::coordinates::{TessLevels, segments, shoot};
 use crate::conformance::meshes::{can_draw, under};
-use crate::conformance::modes::{Domain, Modes, Spacing};
-use crate::conformance::raw::Raster;
+use crate::conformance::modes::{Domain, Modes, Spacing, module};
+use crate::conformance::raw::{Program, Raster, Raw};
 use crate::conformance::{Case, Check, Context, Finding, Group, Status, models};
 use crate::error::Result;
 use crate::gpu::{Cut, Fill, Shading};
+use crate::host::StatisticsQuery;
 use crate::mesh::{Model, builtin};
 use crate::method::{METHODS, Prepared};
 
@@ -60,6 +61,14 @@ fn cases() -> Vec<Case> {
             }));
         }
     }
+    let rule = "a query begins where constants are pushed and no pipeline is bound yet, and counts what is drawn behind";
+    let source = "Vulkan, Queries; Push Constant Updates";
+    cases.push(Case::new(
+        "statistics.begun.constants_pushed",
+        rule,
+        source,
+        begun,
+    ));
     for (domain, spacing) in [Domain::Triangles, Domain::Quads]
         .into_iter()
         .flat_map(|domain| Spacing::ALL.map(|spacing| (domain, spacing)))
@@ -220,6 +229,38 @@ fn triangles(context: &Context, modes: Modes) -> Result<Finding> {
         counted_all += counted;
     }
     Ok(check.finish(format!("{counted_all} triangles")))
+}
+
+/// As where a dispatch, which has constants, stands before draws that are counted.
+fn begun(context: &Context) -> Result<Finding> {
+    let device = context.device()?;
+    if !device.info().support.optional.pipeline_statistics_query {
+        return Ok(Finding::skip("the device has no pipelineStatisticsQuery"));
+    }
+    let modes = Modes::new(Domain::Quads, Spacing::Equal);
+    let table = [TessLevels::uniform(3.0)];
+    let mut raw = Raw::new(device, &[size_of_val(&table) as u64, 4], 16)?;
+    raw.write(0, &table)?;
+    let evaluation = modes.rewrite(module("connectivity.tese")?);
+    let pipeline = raw.pipeline(&Program::new(module("coordinates.tesc")?, evaluation)?)?;
+    let query = StatisticsQuery::new(device)?;
+    raw.submit_all(
+        Some(&query),
+        |cmd| cmd.push(&0u32),
+        |cmd| {
+            cmd.bind(pipeline, &0u32);
+            cmd.draw(1, 1, 0, 0);
+        },
+    )?;
+    let [patches, evaluations, triangles] = query.read()?;
+    context.saw(triangles);
+    let mut check = Check::default();
+    let right = triangle_count(modes.domain, 3) + u64::from(context.is_wrong());
+    let holds = patches >= 1 && evaluations >= 16 && triangles == right;
+    check.hold(holds, || {
+        format!("{patches} patches, {evaluations} evaluations and {triangles} triangles instead of 1, 16 and {right}")
+    });
+    Ok(check.finish(format!("{triangles} triangles")))
 }
 
 #[cfg(test)]

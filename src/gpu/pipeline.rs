@@ -1,6 +1,6 @@
 //! Pipelines: one a pass, from the method's modules.
 
-use std::borrow::Cow;
+mod modules;
 
 use ash::vk;
 
@@ -11,6 +11,7 @@ use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::Spacing;
+use modules::{Module, modules, names};
 
 /// The pipelines of a prepared model, one a pass, for one backend and spacing.
 #[derive(Debug)]
@@ -221,66 +222,12 @@ fn check_tangents(prepared: &Prepared, options: &PipelineOptions<'_>) -> Result<
     }
 }
 
-/// The file that evaluates a pass's patches.
-fn shader(pass: &Pass, residence: Residence) -> &'static str {
-    match residence {
-        Residence::Ring => pass.shader,
-        Residence::Cache => pass.cached.unwrap_or(pass.shader),
-    }
-}
-
 /// The control points of a patch that go through the vertex shader.
 pub(super) fn control_points(pass: &Pass, residence: Residence) -> u32 {
     match (residence, pass.cached) {
         (Residence::Cache, Some(_)) => 1,
         _ => pass.control_points,
     }
-}
-
-/// The modules of ours that a pass's pipeline has, by name.
-fn names(pass: &Pass, options: &PipelineOptions<'_>) -> Vec<(vk::ShaderStageFlags, String)> {
-    use vk::ShaderStageFlags as Stage;
-    let method = shader(pass, options.residence);
-    let views = match options.target.view_mask {
-        0 => "",
-        _ => "multiview.",
-    };
-    let tangents = if options.tangents() { "tangents." } else { "" };
-    let named = |&(stage, name): &(Stage, &str)| {
-        let name = name
-            .replace("{method}", method)
-            .replace("{views}", views)
-            .replace("{spacing}", options.spacing.name())
-            .replace("{tangents}", tangents);
-        (stage, name)
-    };
-    let mut stages: Vec<_> = options
-        .backend
-        .on_device()
-        .stages
-        .iter()
-        .map(named)
-        .collect();
-    // Rasterisation that is discarded has no fragment shader (VUID-VkGraphicsPipelineCreateInfo-pStages-06894 and neighbours); depths need none.
-    let shaded = matches!(options.fill, Fill::Solid(_) | Fill::Lines);
-    if shaded && options.fragment.is_none() {
-        stages.push((Stage::FRAGMENT, format!("{method}.frag")));
-    }
-    stages
-}
-
-/// A stage and the words of its module.
-type Module<'m> = (vk::ShaderStageFlags, Cow<'m, [u32]>);
-
-/// The modules that a pass's pipeline has.
-fn modules<'m>(
-    pass: &Pass,
-    options: &PipelineOptions<'_>,
-    from: &'m dyn Modules,
-) -> Result<Vec<Module<'m>>> {
-    let found = names(pass, options).into_iter();
-    let found = found.map(|(stage, name)| Ok((stage, from.module(&name)?)));
-    found.collect()
 }
 
 /// What a pipeline is made of, its shaders aside.

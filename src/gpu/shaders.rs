@@ -7,6 +7,7 @@
 mod glsl;
 #[cfg(feature = "shaderc")]
 mod live;
+mod outputs;
 
 use std::borrow::Cow;
 
@@ -14,6 +15,7 @@ use crate::error::{Error, Result};
 
 #[cfg(feature = "shaderc")]
 pub use live::Glsl;
+pub(super) use outputs::with_outputs;
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 

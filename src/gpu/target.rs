@@ -227,6 +227,15 @@ impl PipelineOptions<'_> {
         self.fragment.is_some_and(|own| own.tangents)
     }
 
+    /// Whether a fragment shader reads what `glsl/lib/vertex.glsl` hands on at a location: tangents at 5 and 6. Where nothing is drawn all is handed on
+    /// that would be of a picture: so what is measured there is a picture's work.
+    pub(super) fn reads(&self, location: u32) -> bool {
+        match location {
+            5 | 6 => self.tangents(),
+            _ => self.fill != Fill::Depth || self.fragment.is_some(),
+        }
+    }
+
     /// Whether a device can draw so.
     ///
     /// # Errors

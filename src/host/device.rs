@@ -255,17 +255,26 @@ impl Device {
         };
         finished.map_err(|unfinished| {
             if !unfinished.ended {
-                self.0.hung.store(true, Ordering::Release);
-                // May still be in use: neither the commands nor the device may go.
+                // May still be in use.
                 std::mem::forget(once);
-                std::mem::forget(self.clone());
+                self.give_up();
             }
             unfinished.error
         })
     }
 
+    /// [Is hung](Self::is_hung) from now on, and stays to the end of the process.
+    pub(super) fn give_up(&self) {
+        self.0.hung.store(true, Ordering::Release);
+        std::mem::forget(self.clone());
+    }
+
     /// Waits for the fence of a submission. A wait that fails says nothing about the submission, so it is tried again.
-    fn wait(&self, fence: vk::Fence, patience: Duration) -> std::result::Result<(), Unfinished> {
+    pub(super) fn wait(
+        &self,
+        fence: vk::Fence,
+        patience: Duration,
+    ) -> std::result::Result<(), Unfinished> {
         let start = Instant::now();
         let wait = || {
             let left = patience.saturating_sub(start.elapsed());
@@ -302,7 +311,7 @@ impl Device {
     /// Waits until nothing runs on the device any more; false when even that fails, and nothing is known.
     ///
     /// A lost device comes back from this in finite time too, and counts as idle (Vulkan spec, "Lost Device").
-    fn becomes_idle(&self) -> bool {
+    pub(super) fn becomes_idle(&self) -> bool {
         // The call is for one who has all queues of the device alone.
         let _queue = self.queue();
         // SAFETY: the device is live.
@@ -326,10 +335,10 @@ unsafe impl Memory for SharedMemory<'_> {
 }
 
 /// A submission that came to a bad end.
-struct Unfinished {
-    error: Error,
+pub(super) struct Unfinished {
+    pub(super) error: Error,
     /// Whether nothing of it runs any more.
-    ended: bool,
+    pub(super) ended: bool,
 }
 
 /// A command buffer for one submission, with a pool and a fence of its own: nothing to share, so nothing to lock.

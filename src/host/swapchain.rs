@@ -2,6 +2,7 @@
 
 mod choice;
 mod copy;
+mod end;
 mod frame;
 mod renew;
 mod surface;
@@ -10,7 +11,7 @@ use std::time::Duration;
 
 use ash::{khr, vk};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::failed;
 use crate::host::Device;
 use choice::{extent, usage};
@@ -137,13 +138,8 @@ impl Swapchain {
     /// # Errors
     /// Vulkan's own.
     pub fn wait(&self) -> Result<()> {
-        let nanoseconds = PATIENCE.as_nanos() as u64;
-        // SAFETY: as above.
-        let waited = unsafe {
-            let device = self.device.raw();
-            device.wait_for_fences(&[self.fence], true, nanoseconds)
-        };
-        waited.map_err(failed("vkWaitForFences"))
+        let waited = self.device.wait(self.fence, PATIENCE);
+        waited.map_err(|unfinished| unfinished.error)
     }
 
     /// Makes the images anew for a window of this size in pixels, after the last frame. What was made of the old images is of no use afterwards,
@@ -153,6 +149,8 @@ impl Swapchain {
     /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
+        // Whatever fails below, it is due again.
+        self.stale = true;
         let physical = self.device.info().physical;
         let (functions, surface) = (&self.surface.functions, self.surface.raw);
         // SAFETY: device and surface are of one instance, here and below.
@@ -174,14 +172,9 @@ impl Swapchain {
         } else {
             self.create(&able, old)
         };
-        if old != vk::SwapchainKHR::null() {
-            // Of what the display still does with the old images nothing tells but an idle queue.
-            let queue = self.device.queue();
-            // SAFETY: the queue is ours for now; the old swapchain is ours, retired, and in no use any more.
-            unsafe {
-                let _ = self.device.raw().queue_wait_idle(*queue);
-                self.functions.destroy_swapchain(old, None);
-            }
+        if old != vk::SwapchainKHR::null() && self.comes_to_rest() {
+            // SAFETY: the old swapchain is ours, retired, and in no use any more.
+            unsafe { self.functions.destroy_swapchain(old, None) };
         }
         self.raw = made?;
         if self.raw != vk::SwapchainKHR::null() {
@@ -331,11 +324,12 @@ impl Swapchain {
 
     /// A semaphore in the place of one that is signalled, and that nothing waits for.
     fn renew_semaphore(&mut self) {
+        if !self.comes_to_rest() {
+            return;
+        }
         let device = self.device.raw();
-        let queue = self.device.queue();
-        // SAFETY: the queue is ours for now; once it is idle nothing uses the old one.
+        // SAFETY: nothing uses the old one any more.
         unsafe {
-            let _ = device.queue_wait_idle(*queue);
             if let Ok(new) = device.create_semaphore(&vk::SemaphoreCreateInfo::default(), None) {
                 device.destroy_semaphore(self.acquired, None);
                 self.acquired = new;
@@ -446,37 +440,5 @@ impl Swapchain {
             // SAFETY: the last frame is done.
             unsafe { self.device.raw().destroy_image_view(view, None) };
         }
-    }
-}
-
-impl Drop for Swapchain {
-    fn drop(&mut self) {
-        let waited = self.wait();
-        if self.device.is_hung() || waited.is_err() && !self.is_lost() {
-            return;
-        }
-        {
-            let queue = self.device.queue();
-            // SAFETY: the queue is ours for now.
-            let _ = unsafe { self.device.raw().queue_wait_idle(*queue) };
-        }
-        self.destroy_views();
-        let device = self.device.raw();
-        // SAFETY: all of it is ours, and nothing is in use any more; null handles are allowed.
-        unsafe {
-            for &semaphore in &self.drawn {
-                device.destroy_semaphore(semaphore, None);
-            }
-            device.destroy_semaphore(self.acquired, None);
-            device.destroy_fence(self.fence, None);
-            device.destroy_command_pool(self.pool, None);
-            self.functions.destroy_swapchain(self.raw, None);
-        }
-    }
-}
-
-impl Swapchain {
-    fn is_lost(&self) -> bool {
-        matches!(self.is_busy(), Err(Error::DeviceLost { .. }))
     }
 }

@@ -30,7 +30,7 @@ const NO_DEVICE: [&str; 7] = [
 ];
 
 /// Set to a part of programs' names, every occurrence of every call of these fails with every code, and not a sample, under validation: "e" is in all. Takes hours.
-const EVERY: &str = "HULLFORM_EVERY_FAILURE";
+pub const EVERY: &str = "HULLFORM_EVERY_FAILURE";
 
 /// Programs that take long: of these only the calls are sampled that no program before makes.
 const LONG: [&str; 4] = [
@@ -224,7 +224,7 @@ fn try_all(trials: &[Trial], sound: &BTreeMap<&str, Sound>, validates: bool) -> 
     failures.into_inner().expect("nobody panicked")
 }
 
-fn complains(outcome: &Outcome) -> bool {
+pub fn complains(outcome: &Outcome) -> bool {
     let words = outcome.words();
     ["VUID-", "SYNC-HAZARD", "UNASSIGNED-"]
         .iter()

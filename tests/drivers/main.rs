@@ -4,8 +4,14 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[cfg(feature = "view")]
+#[allow(dead_code, reason = "nobody presses keys here")]
+#[path = "../view/display.rs"]
+mod display;
 mod failures;
 mod losses;
+#[cfg(feature = "view")]
+mod swapchain;
 mod trial;
 mod waits;
 mod way;

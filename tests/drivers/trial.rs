@@ -61,6 +61,8 @@ pub struct Bench {
     out: PathBuf,
     /// Whether what the programs do is validated, beneath the driver that fails.
     validates: bool,
+    /// Where windows are shown, as the variable DISPLAY names it.
+    display: Option<String>,
 }
 
 /// What became of a program.
@@ -81,6 +83,7 @@ impl Bench {
             _folder: folder,
             out,
             validates: false,
+            display: None,
         }
     }
 
@@ -89,6 +92,15 @@ impl Bench {
         Bench {
             validates,
             ..Bench::new()
+        }
+    }
+
+    /// The same, where windows are shown on a display.
+    #[cfg(feature = "view")]
+    pub fn shown_on(self, display: &str) -> Bench {
+        Bench {
+            display: Some(display.into()),
+            ..self
         }
     }
 
@@ -109,6 +121,10 @@ impl Bench {
         command.args(&arguments).current_dir(&self.out);
         if self.validates {
             validate(&mut command);
+        }
+        if let Some(display) = &self.display {
+            command.env("DISPLAY", display);
+            command.env_remove("WAYLAND_DISPLAY");
         }
         self.driver.apply(&mut command, fault);
         let output = command.output().expect("the program starts");

@@ -79,22 +79,31 @@ impl Recorder<'_> {
         self.bind_buffers(point, constants);
     }
 
+    /// Sets the push constants, of all stages, and binds nothing.
+    pub fn push<T: bytemuck::NoUninit>(&self, constants: &T) {
+        let bytes = bytemuck::bytes_of(constants);
+        // SAFETY: recording on the device of the layout, which has room for the constants of all of the suite's shaders.
+        unsafe {
+            self.device
+                .cmd_push_constants(self.cmd, self.raw.layout, STAGES, 0, bytes)
+        };
+    }
+
     /// Binds all buffers, and sets the push constants.
     pub(super) fn bind_buffers<T: bytemuck::NoUninit>(
         &self,
         point: vk::PipelineBindPoint,
         constants: &T,
     ) {
-        let bytes = bytemuck::bytes_of(constants);
         let layout = self.raw.layout;
         let sets = self.raw.set.as_slice();
         let sets: Vec<vk::DescriptorSet> = sets.iter().map(StorageSet::raw).collect();
         // SAFETY: recording on the device of all of them.
         unsafe {
-            let device = self.device;
-            device.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
-            device.cmd_push_constants(self.cmd, layout, STAGES, 0, bytes);
-        }
+            self.device
+                .cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[])
+        };
+        self.push(constants);
     }
 
     /// Says of how many control points patches are, for pipelines that leave it to draws.

@@ -10,8 +10,8 @@ use crate::abi::Captured;
 use crate::error::{Error, Result};
 use crate::frame::{Batch, Cut, Decides, Decision, DrawList, Residence, SurfaceOptions};
 use crate::gpu::{
-    CachePipelines, DecidePipeline, Decided, Fill, PointPipeline, TessellatedSurface, View,
-    Workaround, ring,
+    CachePipelines, DecidePipeline, Decided, Fill, Pipelines, PointPipeline, TessellatedSurface,
+    View, Workaround, ring,
 };
 use crate::host::Owned;
 use crate::mesh::Model;
@@ -271,20 +271,10 @@ impl Loaded<'_> {
         let views: Vec<View> = views.collect();
         let device = self.bench.device();
         // SAFETY: recording on the device that made everything, in the order that `cmd_draw` asks for.
-        let prepare = |cmd| unsafe {
+        device.submit(|cmd| unsafe {
             before(cmd);
             self.surface.cmd_prepare(device.raw(), cmd, &views)?;
-            self.cmd_decide(cmd, shots)
-        };
-        // llvmpipe (Mesa 22.3.6) ends the process where a query of statistics comes behind a dispatch in the same submission.
-        let apart = query.is_some() && self.decide_pipeline.is_some();
-        let mut prepare = Some(prepare);
-        if let Some(prepare) = prepare.take_if(|_| apart) {
-            device.submit(prepare)?;
-        }
-        // SAFETY: as above.
-        device.submit(|cmd| unsafe {
-            prepare.map_or(Ok(()), |prepare| prepare(cmd))?;
+            self.cmd_decide(cmd, shots)?;
             if let Some(query) = query {
                 query.cmd_reset(cmd);
             }
@@ -295,6 +285,7 @@ impl Loaded<'_> {
                 let views = first..first + shot.instances;
                 first = views.end;
                 if let Some(query) = query {
+                    self.cmd_bind(cmd, shot.pipelines);
                     query.cmd_begin(cmd);
                 }
                 self.cmd_draws(cmd, views, shot)?;
@@ -309,6 +300,23 @@ impl Loaded<'_> {
             Ok(())
         })?;
         query.map(|query| query.read()).transpose()
+    }
+
+    /// Binds a pipeline, whichever: see [`Remedy::PipelineBeforeQuery`](crate::gpu::Remedy::PipelineBeforeQuery).
+    ///
+    /// # Safety
+    /// `cmd` is recording on the device of the pipelines, which live until it has been executed.
+    unsafe fn cmd_bind(&self, cmd: vk::CommandBuffer, pipelines: &Pipelines) {
+        if let Some(pipeline) = pipelines.get(0) {
+            let graphics = vk::PipelineBindPoint::GRAPHICS;
+            // SAFETY: this function's contract.
+            unsafe {
+                self.bench
+                    .device()
+                    .raw()
+                    .cmd_bind_pipeline(cmd, graphics, pipeline)
+            };
+        }
     }
 
     /// Where the device decides, it does so for all shots, whose lists have one cut.

@@ -22,17 +22,16 @@ impl Swapchain {
     ) -> Result<()> {
         self.wait()?;
         self.destroy_views();
+        if !self.comes_to_rest() {
+            return Err(failed("vkQueueWaitIdle")(vk::Result::ERROR_UNKNOWN));
+        }
         let device = self.device.raw();
-        {
-            let queue = self.device.queue();
-            // SAFETY: the queue is ours for now; once it is idle nothing uses what is destroyed, all of which is ours. Null handles are allowed.
-            unsafe {
-                let _ = device.queue_wait_idle(*queue);
-                for semaphore in self.drawn.drain(..) {
-                    device.destroy_semaphore(semaphore, None);
-                }
-                self.functions.destroy_swapchain(self.raw, None);
+        // SAFETY: nothing uses what is destroyed any more, all of which is ours. Null handles are allowed.
+        unsafe {
+            for semaphore in self.drawn.drain(..) {
+                device.destroy_semaphore(semaphore, None);
             }
+            self.functions.destroy_swapchain(self.raw, None);
         }
         self.raw = vk::SwapchainKHR::null();
         self.stale = true;

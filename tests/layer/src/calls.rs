@@ -20,8 +20,7 @@ macro_rules! passed_on {
                 unsafe {
                     let name = stringify!($name);
                     let fails = state::with(|state| state.call(name));
-                    // What waits and finds the device lost has waited.
-                    if let Some(code) = fails && !(code == vk::Result::ERROR_DEVICE_LOST && WAITS.contains(&name)) {
+                    if let Some(code) = fails && !is_done_all_the_same(name, code) {
                         return code;
                     }
                     let next: vk::$kind = below($first.as_raw(), c_name!($name));
@@ -133,6 +132,18 @@ objects! {
     Device SwapchainKHR by vkCreateSwapchainKHR: PFN_vkCreateSwapchainKHR(SwapchainCreateInfoKHR),
         vkDestroySwapchainKHR: PFN_vkDestroySwapchainKHR;
     Device QueryPool by vkCreateQueryPool: PFN_vkCreateQueryPool(QueryPoolCreateInfo), vkDestroyQueryPool: PFN_vkDestroyQueryPool;
+}
+
+/// Whether a call does what it is for although it returns this code: codes of success say more than that it succeeded; what waits and finds the device lost has waited;
+/// and what is presented to a window that has changed, or that is no more, is enqueued and waits for its semaphores (Vulkan spec, `vkQueuePresentKHR`).
+fn is_done_all_the_same(name: &str, code: vk::Result) -> bool {
+    let gone = [
+        vk::Result::ERROR_OUT_OF_DATE_KHR,
+        vk::Result::ERROR_SURFACE_LOST_KHR,
+    ];
+    code.as_raw() > 0
+        || code == vk::Result::ERROR_DEVICE_LOST && WAITS.contains(&name)
+        || name == "vkQueuePresentKHR" && gone.contains(&code)
 }
 
 fn nothing() {}

@@ -198,8 +198,7 @@ impl<'a> Subject<'a> {
                 unsafe { clock.cmd_end(cmd) };
             }
         };
-        // In a submission of its own: where a dispatch stands before a query of pipeline statistics in a command buffer, llvmpipe crashes (Mesa
-        // 22.3.6).
+        // In a submission of its own, as `render` does it.
         let fills = !self.drawing.surface().is_cached(list);
         let cached = match (fills, &self.points) {
             (true, _) => self.drawing.cache_after(list, begin)?,

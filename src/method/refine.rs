@@ -38,7 +38,8 @@ pub const METHOD: Method = Method {
         reproduces: Reproduces::Itself,
         normals: None,
         interpolates: false,
-        watertight: true,
+        // Not promised: fractional spacings and levels that differ are not held to be whole.
+        watertight: false,
     },
     uses_tables: false,
     isolates: true,

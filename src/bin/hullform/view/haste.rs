@@ -184,7 +184,8 @@ mod tests {
         haste.sent(part);
         haste.done(None);
         assert!(haste.is_slow(), "a part tells nothing of the whole");
-        assert!(haste.is_quick(1e5) && !haste.is_quick(1e8));
+        // It is faster by and by: 1.2 microseconds a piece of work after these.
+        assert!(haste.is_quick(8e4) && !haste.is_quick(9e4));
     }
 
     #[test]

@@ -56,7 +56,7 @@ impl Swapchain {
     /// The swapchain of a window of this size in pixels (where the window system does not know better).
     ///
     /// # Errors
-    /// [`Error::NoDisplay`] when none of the window's formats has 8 bits a channel and sRGB's colours; Vulkan's own.
+    /// [`Error::NoDisplay`](crate::Error::NoDisplay) when none of the window's formats has 8 bits a channel and sRGB's colours; Vulkan's own.
     pub fn new(
         device: &Device,
         surface: WindowSurface,
@@ -146,7 +146,7 @@ impl Swapchain {
     /// and must not be destroyed later than this: framebuffers go first.
     ///
     /// # Errors
-    /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own.
+    /// [`Error::SurfaceLost`](crate::Error::SurfaceLost), after which [`renew`](Self::renew) is due; Vulkan's own.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
         // Whatever fails below, it is due again.
@@ -189,7 +189,7 @@ impl Swapchain {
     /// `record` gets this, a command buffer outside of any render pass, and the image. If it fails nothing is shown, and the error comes back.
     ///
     /// # Errors
-    /// [`Error::SurfaceLost`], after which [`renew`](Self::renew) is due; Vulkan's own; those of `record`.
+    /// [`Error::SurfaceLost`](crate::Error::SurfaceLost), after which [`renew`](Self::renew) is due; Vulkan's own; those of `record`.
     pub fn frame(
         &mut self,
         record: impl FnOnce(&Swapchain, vk::CommandBuffer, Image) -> Result<()>,

@@ -132,7 +132,9 @@ impl Drawn {
         });
         let patches: Vec<(usize, u32)> = patches.collect();
         let vertices = |&(pass, patch)| u64::from(list.vertices(prepared, pass, patch));
-        let boundary = |&(pass, patch)| boundary(model, prepared, &list, cut, pass, patch);
+        // Patterns have spacings of their own.
+        let spacing = backend.cut(cut).spacing;
+        let boundary = |&(pass, patch)| boundary(model, prepared, &list, spacing, pass, patch);
         Ok(Drawn {
             expected: patches.iter().map(vertices).sum(),
             boundary: patches.iter().map(boundary).sum(),
@@ -172,7 +174,7 @@ fn boundary(
     model: &Model,
     prepared: &Prepared,
     list: &DrawList,
-    cut: Cut,
+    spacing: Spacing,
     pass: usize,
     patch: u32,
 ) -> usize {
@@ -190,7 +192,7 @@ fn boundary(
         .zip(levels.edges)
         .take(levels.domain.corners());
     let open = edges.filter(|&(side, _)| is_open(side));
-    open.map(|(_, level)| cut.spacing.segments(level) as usize)
+    open.map(|(_, level)| spacing.segments(level) as usize)
         .sum()
 }
 

@@ -38,8 +38,7 @@ pub const METHOD: Method = Method {
         reproduces: Reproduces::Itself,
         normals: None,
         interpolates: false,
-        // Not promised: fractional spacings and levels that differ are not held to be whole.
-        watertight: false,
+        watertight: true,
     },
     uses_tables: false,
     isolates: true,

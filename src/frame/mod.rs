@@ -4,6 +4,7 @@
 //! of vello's `Recording`: commands as data.
 
 mod backend;
+mod batch;
 mod batches;
 mod culling;
 mod cut;
@@ -15,6 +16,7 @@ mod outcome;
 mod patterns;
 mod residence;
 mod seen;
+mod sub_patches;
 mod tessellated;
 
 pub use backend::Backend;

@@ -34,6 +34,8 @@ struct MadeFor {
     eyes: u32,
     /// Whether they are for dynamic rendering.
     dynamic: bool,
+    /// Whether they draw pieces.
+    sub_patches: bool,
     /// The greatest level that they draw.
     greatest_level: f32,
 }
@@ -86,6 +88,7 @@ impl Pipelines {
                 spacing: options.spacing,
                 eyes: options.target.eyes(),
                 dynamic: matches!(attachments, Attachments::Dynamic { .. }),
+                sub_patches: options.sub_patches,
                 greatest_level: match options.tangents() {
                     true => options.backend.on_device().tangent_level,
                     false => f32::INFINITY,
@@ -121,7 +124,7 @@ impl Pipelines {
     /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
     /// surface's backend draws. Its layout is `layout`, or one that is
     /// compatible with [`Layout::pipeline`] for sets 0 to 2, and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
-    /// `abi::Frame` and these sets as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
+    /// `abi::Frame` and these sets as `glsl/lib` declares them, for levels above 64 with specialization constant 2 set, and spacing and winding are those of `glsl/surface.tese`.
     pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>, layout: Option<OwnLayout>) -> Pipelines {
         Pipelines {
             pipelines,
@@ -140,7 +143,7 @@ impl Pipelines {
     /// The pipeline for a pass of a draw list.
     ///
     /// # Errors
-    /// [`Misuse::OtherPipelines`] when they were made for something else; [`Misuse::BackendLevel`] for a level that geometry shaders have no room for beside
+    /// [`Misuse::OtherPipelines`] when they were made for something else; [`Misuse::SubPatchPipelines`]; [`Misuse::BackendLevel`] for a level that geometry shaders have no room for beside
     /// tangents.
     pub(super) fn for_pass(
         &self,
@@ -152,6 +155,10 @@ impl Pipelines {
         if let Some(greatest) = greatest.filter(|&greatest| list.cut().level > greatest) {
             let backend = list.options().backend.name();
             return Err(Error::Misuse(Misuse::BackendLevel { backend, greatest }));
+        }
+        let knows_pieces = self.made_for.as_ref().is_none_or(|own| own.sub_patches);
+        if list.has_sub_patches() && !knows_pieces {
+            return Err(Error::Misuse(Misuse::SubPatchPipelines));
         }
         let fits = self.made_for.as_ref().is_none_or(|own| {
             let SurfaceOptions {
@@ -277,12 +284,13 @@ impl PipelinePlan<'_> {
         cache: vk::PipelineCache,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
-        // What the colours mean, in fragment shaders, and whether tangents are asked for, where patches are evaluated.
+        // What the colours mean, in fragment shaders, whether tangents are asked for, where patches are evaluated, and whether patches may be pieces.
         let constants = [
             self.options.fill.shading(),
             u32::from(self.options.tangents()),
+            u32::from(self.options.sub_patches),
         ];
-        let entries = [0, 1].map(|number| {
+        let entries = [0, 1, 2].map(|number| {
             vk::SpecializationMapEntry::default()
                 .constant_id(number)
                 .offset(4 * number)

@@ -48,7 +48,7 @@ pub struct Arguments {
     /// Methods [default: all that can draw a model]; `flat`, which ratios are to, is always measured
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
     methods: Vec<String>,
-    /// Tessellation levels, 1 to 64
+    /// Tessellation levels, 1 to 64; up to 1024 as for `render`
     #[arg(long, value_name = "L,M,...", value_delimiter = ',', default_value = "1,2,4,8,16,32", value_parser = options::level)]
     levels: Vec<f32>,
     /// Spacing of the vertices along an edge

@@ -29,9 +29,7 @@ pub enum Misuse {
         backend: &'static str,
     },
     /// The backend does not go to such a level.
-    #[error(
-        "the backend {backend} goes to level {greatest} only; choose a lower level, or the tessellator"
-    )]
+    #[error("the backend {backend} goes to level {greatest} only")]
     BackendLevel {
         /// The backend's name.
         backend: &'static str,
@@ -40,12 +38,12 @@ pub enum Misuse {
     },
     /// A level above 64 with fractional spacing, whose vertices lie where devices choose.
     #[error(
-        "levels above 64 are drawn in pieces, which agree on their edges with equal spacing only; choose that, or a level of 64 at most"
+        "levels above 64 are drawn in pieces, which agree on their edges with equal spacing only"
     )]
     SubPatchSpacing,
     /// A level above 64 for patches that are triangles.
     #[error(
-        "levels above 64 are drawn in pieces of quads, and the method has patches that are triangles; choose a level of 64 at most, or another method"
+        "levels above 64 are drawn in pieces of quads, and the method has patches that are triangles"
     )]
     SubPatchesOfTriangles,
     /// A list whose patches may be cut into pieces, for pipelines that know nothing of them.

@@ -10,7 +10,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::DrawList;
 use crate::frame::backend::Mould;
 use crate::frame::sub_patches::mould;
-use crate::method::{Controls, Prepared, SurfacePoint};
+use crate::method::{Controls, Pass, Prepared, SurfacePoint};
 use crate::tessellation::{Levels, Piece};
 
 /// A vertex of a tessellated surface.
@@ -39,6 +39,24 @@ impl DrawList {
     /// The most points that a surface may have which is kept as points and triangles: some 8 GB of them.
     pub const MOST_POINTS: u64 = 1 << 27;
 
+    /// # Errors
+    /// [`Error::Refused`] for more points than [`MOST_POINTS`](Self::MOST_POINTS).
+    pub fn check_points(&self, prepared: &Prepared) -> Result<()> {
+        let passes = prepared.passes.iter().enumerate();
+        let of_pass = |(number, pass): (usize, &Pass)| {
+            let patches = 0..pass.patches.len() as u32;
+            let points = patches.map(|patch| u64::from(self.vertices(prepared, number, patch)));
+            points.sum::<u64>()
+        };
+        let (points, most) = (passes.map(of_pass).sum::<u64>(), DrawList::MOST_POINTS);
+        if points <= most {
+            return Ok(());
+        }
+        Err(Error::Refused(format!(
+            "the surface has {points} points, and {most} are the most that are kept; choose a lower level"
+        )))
+    }
+
     /// What drawing the list would give: of `prepared`, which it was made for, from its [controls](Prepared::controls). Patches are evaluated in parallel, in
     /// rayon's current pool; the result does not depend on how many threads there are.
     ///
@@ -53,22 +71,16 @@ impl DrawList {
             return Err(Error::Misuse(Misuse::OtherSurface));
         }
         prepared.check_count("control vertices", controls.vertices.len())?;
+        self.check_points(prepared)?;
         let mut moulds: FxHashMap<Key, Arc<Mould>> = FxHashMap::default();
         let mut jobs = Vec::new();
-        let (mut points, mut triangles) = (0u64, 0);
+        let mut triangles = 0;
         for (number, pass) in (0u32..).zip(&prepared.passes) {
             for patch in 0..pass.patches.len() as u32 {
                 let Some(levels) = self.levels(prepared, number as usize, patch) else {
                     continue;
                 };
                 let record = &pass.patches[patch as usize];
-                points += u64::from(self.vertices(prepared, number as usize, patch));
-                if points > DrawList::MOST_POINTS {
-                    return Err(Error::Refused(format!(
-                        "the surface has more than {} points, as many as are kept; choose a lower level",
-                        DrawList::MOST_POINTS
-                    )));
-                }
                 let mould = moulds.entry(self.key(record, &levels));
                 let mould =
                     Arc::clone(mould.or_insert_with(|| Arc::new(self.mould(record, &levels))));

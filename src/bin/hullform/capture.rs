@@ -100,6 +100,7 @@ pub fn captured(
         By::Device(decision, seen) => (drawing.decision, view) = (decision, seen),
     }
     let list = drawing.draw_list(cut)?;
+    list.check_points(drawing.prepared())?;
     let style = Style::new(options, cut.spacing, Fill::Discard);
     let pipelines = bench.pipelines(drawing.prepared(), style)?;
     let mut surface = Surface::default();

@@ -124,7 +124,8 @@ impl Arguments {
     fn check(&self, global: &Global) -> Result<()> {
         let slots = drawing::slots(global.slots);
         let wanted = self.wanted();
-        let decides = |backend| wanted.decides(backend, slots);
+        let greatest = self.levels.iter().copied().fold(1.0, f32::max);
+        let decides = |backend| wanted.decides(backend, slots, greatest);
         let all: Result<Vec<Decides>> = self.backend.iter().map(|&b| decides(b.into())).collect();
         if wanted.is_anything() && all?.contains(&Decides::Host) {
             return Err(Error::Option {
@@ -133,9 +134,9 @@ impl Arguments {
                 } else {
                     "--cull"
                 },
-                problem: "the device decides for the tessellator alone, and with slots by counters"
+                problem: "the device decides for the tessellator alone, with slots by counters, and up to level 64"
                     .into(),
-                remedy: "leave out --backend and --slots, or decisions".into(),
+                remedy: "leave out --backend, --slots and levels above 64, or decisions".into(),
             });
         }
         Ok(())

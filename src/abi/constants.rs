@@ -62,7 +62,7 @@ constants! {
     /// Invocations of a workgroup of the shader that computes points.
     POINT_INVOCATIONS = 64;
 
-    /// Invocations of a control shader that runs stencils; also its greatest number of control points.
+    /// The greatest number of control points of a patch whose control shader runs stencils, and of that shader's invocations.
     CONTROL_INVOCATIONS = 32;
     /// The deepest level of a plan.
     HIGHEST_LEVEL = 10;

@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::shaders::{Embedded, Modules, moved};
+use crate::gpu::shaders::{Embedded, INVOCATIONS_CONSTANT, Modules, moved};
 use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
@@ -99,9 +99,10 @@ impl Pipelines {
             let plan = PipelinePlan {
                 options,
                 control_points: control_points(pass, options.residence),
+                invocations: layout.enabled().control_invocations(),
                 layout: pipelines.layout_or(layout),
             };
-            let modules = modules(pass, options, from);
+            let modules = modules(pass, options, plan.invocations, from);
             // SAFETY: this function's contract.
             let made = modules.and_then(|modules| unsafe { plan.build(device, cache, &modules) });
             match made {
@@ -241,6 +242,8 @@ pub(super) fn control_points(pass: &Pass, residence: Residence) -> u32 {
 struct PipelinePlan<'a> {
     options: &'a PipelineOptions<'a>,
     control_points: u32,
+    /// Of control shaders that share their work among them.
+    invocations: u32,
     layout: OwnLayout,
 }
 
@@ -284,13 +287,15 @@ impl PipelinePlan<'_> {
         cache: vk::PipelineCache,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
-        // What the colours mean, in fragment shaders, whether tangents are asked for, where patches are evaluated, and whether patches may be pieces.
+        // What the colours mean, in fragment shaders; whether tangents are asked for, where patches are evaluated; whether patches may be pieces; how many invocations
+        // control shaders have that share their work.
         let constants = [
             self.options.fill.shading(),
             u32::from(self.options.tangents()),
             u32::from(self.options.sub_patches),
+            self.invocations,
         ];
-        let entries = [0, 1, 2].map(|number| {
+        let entries = [0, 1, 2, INVOCATIONS_CONSTANT].map(|number| {
             vk::SpecializationMapEntry::default()
                 .constant_id(number)
                 .offset(4 * number)

@@ -5,6 +5,8 @@
 
 #[cfg(feature = "shaderc")]
 mod glsl;
+mod instructions;
+mod invocations;
 #[cfg(feature = "shaderc")]
 mod live;
 mod outputs;
@@ -15,6 +17,7 @@ use crate::error::{Error, Result};
 
 #[cfg(feature = "shaderc")]
 pub use live::Glsl;
+pub(super) use invocations::{INVOCATIONS_CONSTANT, with_invocations};
 pub(super) use outputs::with_outputs;
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

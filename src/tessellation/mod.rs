@@ -12,6 +12,6 @@ pub use coordinates::coordinates;
 pub(crate) use levels::levels_of_edges_and_inside;
 pub use levels::{Domain, Levels, Spacing, levels, levels_of_edges, required_level};
 pub use pattern::{lattice_rows, lattice_segments, lattice_vertices, pattern};
-pub(crate) use piece::Piece;
-pub(crate) use sub_patch::{TESSELLATED, piece_coordinates};
+pub(crate) use piece::{Piece, TESSELLATED};
+pub(crate) use sub_patch::piece_coordinates;
 pub use triangulate::triangulate;

@@ -2,6 +2,9 @@
 
 use crate::abi;
 
+/// The greatest tess level of a patch that is drawn at once.
+pub(crate) const TESSELLATED: f32 = (1u32 << abi::TESSELLATED_LEVEL) as f32;
+
 /// A piece of a quad that is halved `depth` times: so many pieces to the right and up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Piece {

@@ -9,10 +9,7 @@
 //! equal spacing: where vertices slide apart the specification does not fix where they are.
 
 use crate::abi;
-use crate::tessellation::{Domain, Levels, Piece};
-
-/// The greatest tess level of a patch that is drawn at once.
-pub(crate) const TESSELLATED: f32 = (1u32 << abi::TESSELLATED_LEVEL) as f32;
+use crate::tessellation::{Domain, Levels, Piece, TESSELLATED};
 
 impl Levels {
     /// How often the patch is halved before it is drawn, each way; 0 where a tessellator makes its segments at once.

@@ -15,9 +15,9 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
+pub(super) use invocations::{INVOCATIONS_CONSTANT, with_invocations};
 #[cfg(feature = "shaderc")]
 pub use live::Glsl;
-pub(super) use invocations::{INVOCATIONS_CONSTANT, with_invocations};
 pub(super) use outputs::with_outputs;
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

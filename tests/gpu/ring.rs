@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use ash::vk;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Batch, Cut, Fill, Layout, Pipelines, Remedy, Slots, SurfaceOptions, View, Workaround, workaround,
+    Batch, Cut, Fill, Layout, Pipelines, Remedy, Slots, SurfaceOptions, View, Workaround,
+    workaround,
 };
 use hullform::host::{Shot, Style, vertex_bits};
 use hullform::mesh::Model;

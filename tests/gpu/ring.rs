@@ -5,10 +5,9 @@ use std::collections::BTreeSet;
 use ash::vk;
 use hullform::abi::Captured;
 use hullform::gpu::{
-    Batch, Cut, Fill, Layout, Pipelines, Remedy, Slots, SurfaceOptions, View, Workaround,
-    workaround,
+    Batch, Cut, Fill, Layout, Pipelines, Remedy, Slots, SurfaceOptions, Workaround, workaround,
 };
-use hullform::host::{Shot, Style, vertex_bits};
+use hullform::host::{self, Shot, Style, vertex_bits};
 use hullform::mesh::Model;
 use hullform::method::Prepared;
 use hullform::tessellation::Spacing;
@@ -131,11 +130,11 @@ fn bits_do_not_depend_on_how_many_invocations_fill_the_ring() {
                 let pipelines = made.expect("pipelines");
                 let shot = Shot {
                     pipelines: &pipelines,
-                    view: View::default(),
+                    view: loaded.view,
                     instances: 1,
                     batches: list.batches().collect(),
                 };
-                loaded.draw(&[shot]).expect("it is executed");
+                host::Loaded::draw(&loaded, &[shot]).expect("it is executed");
                 pipelines.destroy(device);
                 layout.destroy(device);
             }

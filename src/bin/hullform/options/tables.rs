@@ -102,7 +102,6 @@ impl Tables {
             tables: self.tables(),
             isolation,
             plans,
-            ..MethodOptions::default()
         })
     }
 

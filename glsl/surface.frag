@@ -3,6 +3,7 @@
 
 // Shading for people who have no renderer of their own: lit, or telling what the surface is made of.
 
+#define CONSTANT_SUB_PATCHES
 #include "lib/interface.glsl"
 #include "method"
 #include "lib/displacement.glsl"

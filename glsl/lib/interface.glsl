@@ -23,8 +23,9 @@ uint control_at(uint place) { return words[bases.controls + place]; }
 // The patch of a number; surplus numbers of the last instance read the last patch and are not drawn.
 Patch patch_record(uint number) { return patches[min(number, frame.end_patch - 1u)]; }
 
-// Whether pipelines draw patches that may be cut into pieces: a constant, so that others run no code for it. Fragments are many more than that.
-#if defined(STAGE_VERTEX) || defined(STAGE_CONTROL) || defined(STAGE_EVALUATION)
+// Whether pipelines draw patches that may be cut into pieces: a constant, so that others run no code for it. An engine's own fragment shaders have no such
+// constant, and ask the frame.
+#if defined(STAGE_VERTEX) || defined(STAGE_CONTROL) || defined(STAGE_EVALUATION) || defined(CONSTANT_SUB_PATCHES)
 layout(constant_id = 2) const bool SUB_PATCHES = false;
 #else
 const bool SUB_PATCHES = true;

@@ -57,7 +57,7 @@ pub struct SurfaceOptions {
     pub count_vertices: bool,
     /// The greatest level that will be drawn, 1..=64; for [`Backend::Geometry`] at most 32. Up to 1024 for [`Backend::Tessellator`] where the host decides and
     /// patches are quads: those with more than 64 segments are cut into pieces before they are drawn, at equal spacing. What is drawn then takes 32 bytes a
-    /// piece; pipelines are made [for it](crate::gpu::PipelineOptions::sub_patches).
+    /// piece; pipelines are made for it, `gpu::PipelineOptions::sub_patches`.
     pub greatest_level: f32,
     /// How many times the batches are drawn after one `cmd_prepare`, 1 at least; see
     /// [`DrawList::round`](super::DrawList::round).

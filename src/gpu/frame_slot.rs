@@ -372,15 +372,16 @@ impl FrameSlot {
     /// What the device decided about the patches of a pass in a view; empty where the host decides, or there is no such pass or view. Meaningful when
     /// [`cmd_read_back`](Self::cmd_read_back) has been executed.
     pub fn decided(&self, pass: usize, view: u32) -> &[abi::PatchDraw] {
-        let Some(&[draws, _]) = self.numbers.decisions.get(pass) else {
+        // What the host decides may be sub-patches, which are other records.
+        let of_device = self.options.decides == Decides::Device;
+        let decisions = self.numbers.decisions.get(pass).filter(|_| of_device);
+        let Some(&[draws, _]) = decisions else {
             return &[];
         };
         let records: &[abi::PatchDraw] = bytemuck::cast_slice(self.bound.buffer(draws).bytes());
         let count = records.len() / self.options.views.max(1) as usize;
         let of_view = records.chunks(count.max(1)).nth(view as usize);
-        of_view
-            .filter(|_| self.options.decides == Decides::Device)
-            .unwrap_or(&[])
+        of_view.unwrap_or(&[])
     }
 
     /// Records the copy of what was counted and captured to where the host can read it.

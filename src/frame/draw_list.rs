@@ -16,7 +16,7 @@ use crate::tessellation::{Levels, levels_of_edges};
 /// It belongs to what was prepared and to the options that it was made with: a surface of other ones refuses it.
 #[derive(Clone, Debug)]
 pub struct DrawList {
-    number: u64,
+    pub(super) number: u64,
     /// The number and version of what was prepared.
     prepared: [u64; 2],
     options: SurfaceOptions,
@@ -27,8 +27,8 @@ pub struct DrawList {
     ring_batches: u32,
     /// By run.
     draws: Vec<Vec<Draw>>,
-    /// By pass and patch, where depth tags are given.
-    tagged: Option<Vec<Vec<Levels>>>,
+    /// By pass and patch, where depth tags are given, or some are chosen; level 0 where nothing is drawn.
+    pub(super) tagged: Option<Vec<Vec<Levels>>>,
     records: Vec<Vec<abi::PatchDraw>>,
     instances: Vec<Vec<u32>>,
     patterns: Vec<Levels>,
@@ -47,7 +47,6 @@ impl DrawList {
         cut: Cut,
         tags: Option<&DepthTags>,
     ) -> Result<DrawList> {
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
         options.check(prepared)?;
         let cut = options.cut(cut)?;
         let bounds = options.bounds(instance_vertices);
@@ -59,7 +58,7 @@ impl DrawList {
         }
         let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
         let mut list = DrawList {
-            number: NUMBER.fetch_add(1, Ordering::Relaxed),
+            number: new_number(),
             prepared: [prepared.number(), prepared.version()],
             options: *options,
             instance_vertices,
@@ -100,7 +99,8 @@ impl DrawList {
     }
 
     /// Fills in draws, and what the host decides about each patch where it does.
-    fn decide(&mut self, prepared: &Prepared) {
+    pub(super) fn decide(&mut self, prepared: &Prepared) {
+        (self.draws, self.records, self.instances) = Default::default();
         let records = self.options.has_host_slots() || self.tagged.is_some();
         let patterns = self.options.backend.has_patterns();
         let mut all = Patterns::default();
@@ -242,14 +242,16 @@ impl DrawList {
         self.prepared == [prepared.number(), prepared.version()]
     }
 
-    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch, or its slot is vacant.
+    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch, its slot is vacant, or it is not
+    /// [chosen](Self::only).
     pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Option<Levels> {
         let patches = prepared.passes.get(pass)?;
-        match &self.tagged {
+        let levels = match &self.tagged {
             Some(_) if patches.is_vacant(patch as usize) => None,
             Some(levels) => levels.get(pass)?.get(patch as usize).copied(),
             None => self.cut.levels(patches, patch as usize),
-        }
+        };
+        levels.filter(|levels| levels.inside > 0.0)
     }
 
     /// The vertices of a patch; none where there is no such patch.
@@ -276,6 +278,12 @@ impl DrawList {
     pub fn join(&self, levels: &Levels, uv: &[[f32; 2]]) -> Option<Vec<[u32; 3]>> {
         self.options.backend.join(levels, self.cut.spacing, uv)
     }
+}
+
+/// A number that no list had before.
+pub(super) fn new_number() -> u64 {
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    NUMBER.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Patches of a pass that are drawn at once.

@@ -5,6 +5,7 @@
 
 mod backend;
 mod batches;
+mod chosen;
 mod culling;
 mod cut;
 mod decision;
@@ -18,6 +19,7 @@ mod seen;
 mod tessellated;
 
 pub use backend::Backend;
+pub use chosen::hull_points;
 pub use culling::Culled;
 pub use cut::Cut;
 pub use decision::{Decision, Metric, Samples};

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{Decided, Decides, Decision, DrawList, Pipelines, Residence, View, ring};
+use hullform::gpu::{
+    Decided, Decides, Decision, DrawList, Filling, Pipelines, Residence, View, ring,
+};
 use hullform::host::Owned;
 use hullform::method::{Editable, Update};
 
@@ -71,6 +73,35 @@ impl Drawn {
             self.surface.finish_upload(device.raw(), memory);
         }
         self.growth = Growth::Done;
+    }
+
+    /// How many control points are to be computed before it is drawn.
+    pub(super) fn uncached(&self) -> u32 {
+        let cached = self.list.as_ref().filter(|_| self.cache.is_some());
+        cached.map_or(0, |list| self.surface.uncached(list))
+    }
+
+    /// Records the computation of so many of these: how many they are.
+    ///
+    /// # Safety
+    /// As [`cmd_prepare`](Self::cmd_prepare).
+    pub(super) unsafe fn cmd_fill(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        context: &Context,
+        most: u32,
+    ) -> Result<u32> {
+        let (device, layout) = (context.device().raw(), context.layout());
+        let (Some(cache), Some(list)) = (&self.cache, &self.list) else {
+            return Ok(0);
+        };
+        let filling = Filling { list, most };
+        // SAFETY: this function's contract.
+        unsafe {
+            self.surface.cmd_upload(device, cmd);
+            self.surface
+                .cmd_cache_some(device, cmd, layout, cache, filling)
+        }
     }
 
     /// Records what comes before rendering: how many control points are computed.

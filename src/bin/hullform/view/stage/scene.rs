@@ -36,6 +36,8 @@ pub struct Scene {
     steps: Vec<Step>,
     at: Cursor,
     end: Cursor,
+    /// Before anything is drawn, the points of caches that the next slice computes, where these are too many for one.
+    filling: Option<u32>,
 }
 
 /// With what views a surface is prepared.
@@ -123,6 +125,7 @@ impl Stage {
             steps: Vec::new(),
             at: Cursor::default(),
             end: Cursor::default(),
+            filling: None,
             sides,
         };
         for (number, side) in scene.sides.iter().enumerate() {
@@ -238,6 +241,10 @@ impl Stage {
         context: &Context,
         scene: &mut Scene,
     ) -> Result<()> {
+        if let Some(points) = scene.filling {
+            // SAFETY: this function's contract.
+            return unsafe { self.cmd_fill(cmd, context, scene, points) };
+        }
         let device = context.device().raw();
         let (slice, is_part) = (scene.kind(), scene.part.is_some());
         // SAFETY: this function's contract; slices come in their order.
@@ -297,6 +304,29 @@ impl Stage {
     }
 }
 
+impl Stage {
+    /// Computes so many points of caches.
+    ///
+    /// # Safety
+    /// As [`record`](Self::record).
+    unsafe fn cmd_fill(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        context: &Context,
+        scene: &mut Scene,
+        mut points: u32,
+    ) -> Result<()> {
+        for seen in &scene.views {
+            let drawn = &mut self.parts[seen.part].sides[seen.recipe];
+            // SAFETY: this function's contract.
+            let filled = unsafe { drawn.cmd_fill(cmd, context, points) }?;
+            scene.cost.points += u64::from(filled);
+            points -= filled.min(points);
+        }
+        Ok(())
+    }
+}
+
 impl Staged {
     /// With what views a surface of it is prepared for an area of the window, and what is decided there.
     fn seen(&self, viewer: &Viewer, drawn: &Drawn, area: Area, context: &Context) -> Seen {
@@ -343,7 +373,17 @@ pub(super) fn work(vertices: u32, points: u32) -> f64 {
 impl Scene {
     /// Decides what the next frame draws.
     fn plan(&mut self, stage: &Stage, most: f64) -> Sliced {
-        let (mut work, mut end) = (0.0, self.at);
+        let mut end = self.at;
+        let mut work = match self.at == Cursor::default() {
+            true => POINT * self.uncached(stage),
+            false => 0.0,
+        };
+        self.filling = (work > most).then_some((most / POINT) as u32);
+        if self.filling.is_some() {
+            (self.end, work) = (self.at, most);
+            let is_last = false;
+            return Sliced { work, is_last };
+        }
         'steps: while let Some(step) = self.steps.get(end.step) {
             let recipe = self.sides[step.side].recipe;
             match &step.what {
@@ -369,6 +409,15 @@ impl Scene {
             work,
             is_last: end.step == self.steps.len(),
         }
+    }
+
+    /// The points of caches that are to be computed before anything is drawn.
+    fn uncached(&self, stage: &Stage) -> f64 {
+        let drawn = self
+            .views
+            .iter()
+            .map(|seen| &stage.parts[seen.part].sides[seen.recipe]);
+        drawn.map(|drawn| f64::from(drawn.uncached())).sum()
     }
 
     /// The work that all of it is.

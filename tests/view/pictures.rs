@@ -102,9 +102,11 @@ fn a_picture_for_the_readme() {
     let folder = tempfile::tempdir().expect("a folder");
     let options = ["--size", "1280x800", "builtin:hull"];
     let session = Session::open_with(&display, folder.path(), &options, |_| {});
-    press(&session, 's');
+    session.press('s');
+    session.until("split", |state| state["compare"]["beside"] == "split");
     (0..3).for_each(|_| press(&session, 'c'));
-    session.hand.to(480.0, 355.0);
+    session.hand.to(480.0, 400.0);
+    session.hand.to(482.0, 400.0);
     session.until("numbers under the cursor", |state| {
         state["probe"].is_object()
     });

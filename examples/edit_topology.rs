@@ -94,6 +94,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         spacing: cut.spacing,
         fill: Fill::Solid(Shading::Lit),
         fragment: None,
+        sub_patches: false,
         layout: None,
     };
     // SAFETY: all of one live device.

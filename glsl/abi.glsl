@@ -30,7 +30,7 @@ const uint BINDING_POINTS = 5u;
 const uint BINDING_SCRATCH = 6u;
 // Frame, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
 const uint BINDING_COUNTERS = 7u;
-// Frame, binding: `PatchDraw` records, what the host decides about each patch.
+// Frame, binding: `PatchDraw` records, what the host decides about each patch; where patches are cut before they are drawn, `SubPatch` records.
 const uint BINDING_DRAWS = 8u;
 // Frame, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
 const uint BINDING_CAPTURE = 9u;
@@ -68,6 +68,8 @@ const uint POINT_INVOCATIONS = 64u;
 const uint CONTROL_INVOCATIONS = 32u;
 // The deepest level of a plan.
 const uint HIGHEST_LEVEL = 10u;
+// Binary logarithm of the greatest tess level that every tessellator does (Vulkan spec, `maxTessellationGenerationLevel`).
+const uint TESSELLATED_LEVEL = 6u;
 // What a patch is evaluated by: the inside, its four edges, its four corners.
 const uint USES = 9u;
 // So many products of a weight and a vertex the points of a use take at most, for each word of all tables.
@@ -182,6 +184,8 @@ const uint CHILD_OF_TRIANGLE = 5u;
 const uint PATCH_NEARBY_CORNER = 128u;
 // A piece of a quad, which its `plan` tells: its column and, 12 bits higher, its row among as many as there are at its depth.
 const uint CHILD_PIECE = 9u;
+// In a piece's `plan`: its row; its column is below.
+const uint PIECE_ROW_SHIFT = 12u;
 // In a piece's `plan`: its edge with a crease plus 1, or 0; three bits.
 const uint PIECE_CREASE_SHIFT = 24u;
 // In a piece's `plan`: its depth, how often the ptex face is halved.
@@ -204,6 +208,8 @@ const uint FRAME_ADAPTIVE = 16u;
 const uint FRAME_COUNT = 32u;
 // Frame flag: patches have levels of their own in each view, as the device decided.
 const uint FRAME_DECIDED = 64u;
+// Frame flag: numbers of patches are those of sub-patches, which patches are cut into before they are drawn.
+const uint FRAME_SUB_PATCHES = 128u;
 // Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
 const uint FRAME_SEGMENTS_SHIFT = 8u;
 // Frame flag: views an instance, 1 but with multiview; six bits.
@@ -267,6 +273,20 @@ struct PatchDraw {
     // Levels of its edges from corner i to corner i + 1, when it has levels of its own.
     vec4 edges;
     // The level of its inside.
+    float inside;
+};
+
+// A patch, or a piece of one, that is drawn by itself where a list has patches with more segments than a tessellator makes.
+struct SubPatch {
+    // The patch.
+    uint patch_number;
+    // Which piece: its column and, 12 bits higher, its row among as many as there are at its depth, and the depth, `PIECE_DEPTH_SHIFT`. 0 for the whole.
+    uint piece;
+    // Where its slot in the scratch ring begins, when the host gives slots.
+    uint slot;
+    // Levels of the whole patch's edges from corner i to corner i + 1.
+    vec4 edges;
+    // The level of the whole patch's inside: of pieces a whole number for each; 0 where nothing is drawn.
     float inside;
 };
 

@@ -8,6 +8,7 @@
 #include "lib/displacement.glsl"
 #include "lib/levels.glsl"
 #include "lib/shading.glsl"
+#include "lib/sub_patch.glsl"
 
 // One of SHADING_...; a constant of the pipeline, so that no fragment pays for what others are shaded by.
 layout(constant_id = 0) const uint SHADING = SHADING_LIT;
@@ -42,7 +43,7 @@ vec3 depth_colour(Patch record, vec2 pixel) {
 
 // The level of the edge that is near, else that of the inside; each power of two is a sixth of the ramp.
 vec3 level_colour(uint number, uint view, Patch record) {
-    Levels levels = patch_levels(number, view, record);
+    Levels levels = whole_levels(number, view, record);
     float level = levels.inside;
     float near = 0.15;
 #ifdef TRIANGLES
@@ -140,7 +141,7 @@ void main() {
     case SHADING_PATCH: colour = patch_colour(number * 2u + record.ptex); break;
     case SHADING_NODE: colour = node_colour(record, pixel); break;
     case SHADING_VALENCE: colour = valence_colour(record); break;
-    case SHADING_LEVEL: colour = level_colour(number, view, record); break;
+    case SHADING_LEVEL: colour = level_colour(drawn_number(in_drawn), view, record); break;
     case SHADING_CHECKER: colour = checker_colour(); break;
     case SHADING_DEPTH: colour = depth_colour(record, pixel); break;
     case SHADING_HEIGHT: colour = height_colour(views[view].displacement); break;

@@ -8,6 +8,7 @@ layout(location = 1) in vec3 in_point[];
 layout(location = 2) in uint in_view[];
 
 #include "method"
+#include "lib/sub_patch.glsl"
 
 layout(vertices = CONTROL_VERTICES) out;
 
@@ -22,8 +23,8 @@ layout(location = 3) patch out uint out_view;
 // barrier() may stand in main only, and in no control flow (GLSL 4.60, section 8.16).
 void main() {
     uint number = in_patch[0];
-    Patch record = patch_record(number);
-    Levels levels = patch_levels(number, in_view[0], record);
+    Patch record = patch_record(patch_of(number));
+    Levels levels = whole_levels(number, in_view[0], record);
     // A patch that is decided not to be drawn has no level.
     bool drawn = number < frame.end_patch && levels.inside > 0.0;
 #ifdef SCRATCH_RING
@@ -40,6 +41,7 @@ void main() {
 #else
     out_point[gl_InvocationID] = patch_point(record, gl_InvocationID);
 #endif
+    levels = tessellated_levels(number, levels);
     if (gl_InvocationID == 0) {
         out_patch = number;
         out_view = in_view[0];

@@ -6,6 +6,7 @@
 
 #include "lib/interface.glsl"
 #include "method"
+#include "lib/sub_patch.glsl"
 #include "lib/vertex.glsl"
 
 // SPACING comes from the build: one module for equal_spacing, one for fractional_even_spacing.
@@ -21,7 +22,7 @@ layout(location = 0) patch in uint in_patch;
 #ifdef SCRATCH_RING
 layout(location = 1) patch in uint in_slot;
 #else
-#define in_slot slot_of(in_patch)
+#define in_slot slot_of(patch_of(in_patch))
 #endif
 layout(location = 3) patch in uint in_view;
 
@@ -42,9 +43,18 @@ Levels decided_levels() {
 }
 
 void main() {
-    Patch record = patch_record(in_patch);
+    uint number = patch_of(in_patch);
+    Patch record = patch_record(number);
     Levels levels = decided_levels();
-    vec2 uv = shared_coordinates(record, levels, gl_TessCoord);
+    vec2 uv = gl_TessCoord.xy;
+#ifndef TRIANGLES
+    if (are_sub_patches()) {
+        levels = whole_levels(in_patch, in_view, record);
+        uv = piece_coordinates(record, levels, sub_patches[sub_patch_at(in_patch)].piece, uv);
+    }
+#endif
+    if (!are_sub_patches()) uv = shared_coordinates(record, levels, gl_TessCoord);
     if (TANGENTS) tangent_level = required_level(levels);
-    write_vertex(record, in_patch, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));
+    write_vertex(record, number, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));
+    if (are_sub_patches()) out_drawn = drawn_key(in_patch, SEEN_VIEW);
 }

@@ -25,6 +25,20 @@ structs! {
         inside: f32,
     }
 
+    /// A patch, or a piece of one, that is drawn by itself where a list has patches with more segments than a tessellator makes.
+    SubPatch {
+        /// The patch.
+        patch_number: u32,
+        /// Which piece: its column and, 12 bits higher, its row among as many as there are at its depth, and the depth, `PIECE_DEPTH_SHIFT`. 0 for the whole.
+        piece: u32,
+        /// Where its slot in the scratch ring begins, when the host gives slots.
+        slot: u32,
+        /// Levels of the whole patch's edges from corner i to corner i + 1.
+        edges: [f32; 4],
+        /// The level of the whole patch's inside: of pieces a whole number for each; 0 where nothing is drawn.
+        inside: f32,
+    }
+
     /// A patch: a triangle, a quad, or the part of an n-gon at one of its corners.
     Patch {
         /// Its ptex face.

@@ -87,7 +87,7 @@ fn work_is_counted_and_every_file_says_on_what() {
 #[test]
 fn what_cannot_be_measured_is_refused_before_anything_is_written() {
     let words = fails(&["bench", "builtin:cube", "--levels", "0.5"], 2);
-    assert!(words.contains("from 1 to 64"), "{words}");
+    assert!(words.contains("from 1 to 1024"), "{words}");
     let words = fails(&["bench", "builtin:cube", "--methods", "pink"], 2);
     assert!(words.contains("pink"), "{words}");
     let words = fails(&["bench", "--levels", "2"], 2);

@@ -6,7 +6,7 @@ use hullform::frame::{
 use hullform::mesh::{Model, builtin};
 use hullform::method::{DepthTags, METHODS, MethodOptions, Prepared, SurfacePoint};
 use hullform::plan::Database;
-use hullform::tessellation::Spacing;
+use hullform::tessellation::{Spacing, required_level};
 
 /// The limit of drivers that lose patches beyond 16 bits, tighter ones to single patches, and none.
 const INSTANCES: [Option<u32>; 4] = [None, Some(65_535), Some(2_000), Some(1)];
@@ -102,7 +102,6 @@ fn a_list_draws_each_patch_once_within_its_bounds() {
     assert!(lists > 1000, "{lists}");
 }
 
-/// Slots of the host follow one another in each batch, and leave room for what the cut needs at most.
 /// Of what was edited some slots are vacant: nothing is drawn of these, whoever makes the triangles and whoever decides, and all else as of a fresh preparation.
 #[test]
 fn vacant_slots_are_drawn_nowhere() {
@@ -170,6 +169,7 @@ fn vacant_slots_are_drawn_nowhere() {
     }
 }
 
+/// Slots of the host follow one another in each batch, and leave room for what each patch needs.
 #[test]
 fn slots_of_the_host_do_not_overlap() {
     let prepared = &prepared("ngons")[0];
@@ -193,7 +193,9 @@ fn slots_of_the_host_do_not_overlap() {
             for patch in batch.patches() {
                 let record = list.records(batch.pass())[patch as usize];
                 assert_eq!(record.slot, next);
-                next += cut.points(pass, patch as usize);
+                let levels = list.levels(prepared, batch.pass(), patch);
+                let level = levels.map(|levels| required_level(&levels, pass.max_level));
+                next += pass.points(patch as usize, level.expect("it is drawn"));
             }
             assert_eq!(next, batch.points());
         }

@@ -48,7 +48,11 @@ fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static s
             abi::BINDING_POINTS => inner(shape).1.map(|_| "Point"),
             abi::BINDING_POINT_ROWS => Some("PointRow"),
             abi::BINDING_POINT_TERMS => Some("PointTerm"),
-            abi::BINDING_DRAWS => Some("PatchDraw"),
+            // Or what is drawn of patches that are cut into pieces, which has two numbers more.
+            abi::BINDING_DRAWS => inner(shape).1.map(|own| match own.offsets.len() {
+                3 => "PatchDraw",
+                _ => "SubPatch",
+            }),
             _ => None,
         },
     }

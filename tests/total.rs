@@ -451,7 +451,8 @@ fn depths_want_a_tag_a_vertex() {
     }
     for odd in ODD {
         let tags = DepthTags::by_distance(&[Vec3::splat(odd)], Vec3::ZERO, odd, odd);
-        assert!(tags.depths.iter().all(|depth| (0.0..=6.0).contains(depth)));
+        let range = 0.0..=DepthTags::DEEPEST;
+        assert!(tags.depths.iter().all(|depth| range.contains(depth)));
     }
     assert_eq!(Outline::default().depths(&[]).expect("no side"), []);
 }

@@ -295,6 +295,7 @@ fn pipelines<'g>(
         spacing: Spacing::FractionalEven,
         fill,
         fragment: own,
+        sub_patches: false,
         layout: layout_of,
     };
     let (device, cache) = (&gpu.device, vk::PipelineCache::null());

@@ -46,7 +46,8 @@ vec3 point_at(uint place) { return scratch[place].xyz; }
 uint take_slot(uint number, uint points) {
     atomicAdd(counters[COUNTER_POINTS], points);
     bool host = (frame.flags & FRAME_HOST_SLOTS) != 0u;
-    uint slot = host ? draws[number].slot : atomicAdd(counters[frame.counter], points);
+    uint given = are_sub_patches() ? sub_patches[number].slot : draws[number].slot;
+    uint slot = host ? given : atomicAdd(counters[frame.counter], points);
     uint room = uint(scratch.length());
     if (points <= room && slot <= room - points) return slot;
     atomicAdd(counters[COUNTER_OVERFLOWS], 1u);

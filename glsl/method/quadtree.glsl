@@ -285,7 +285,11 @@ vec4 use_head(Patch record, Parts parts, uint number) {
     return vec4(origin, float(planned || inside ? start : USES));
 }
 
-// Fills the slot: every 32nd point is this invocation's. Those of the inside and of edges are one stretch, so that few invocations have nothing to do; corners,
+// How many invocations a patch has, no less than eight: as many as the device runs abreast, for with more of them it would go again through all that is done once a
+// patch. The pipeline says so, and the module's `OutputVertices` with it (`gpu::shaders::invocations`).
+layout(constant_id = 3) const uint INVOCATIONS = CONTROL_INVOCATIONS;
+
+// Fills the slot: each point is one invocation's. Those of the inside and of edges are one stretch, so that few invocations have nothing to do; corners,
 // where tangents are summed and normals decided, are another.
 //
 // Machines that run invocations abreast go through all code that one of them needs, and through the body of a loop once more to find out at its
@@ -293,12 +297,16 @@ vec4 use_head(Patch record, Parts parts, uint number) {
 // computed when it leaves such a loop before others do is overwritten by theirs (seen on llvmpipe, Mesa 22.3.6).
 void run_stencils(Patch record, uint slot, uint level, uint count) {
     Parts parts = find_parts(record, level);
-    if (gl_InvocationID < USES && count > 0u) scratch[slot + gl_InvocationID] = use_head(record, parts, gl_InvocationID);
-    uint next = USES + gl_InvocationID;
+    uint next = gl_InvocationID;
+    if (count > 0u && next < USES) do {
+        scratch[slot + next] = use_head(record, parts, next);
+        next += INVOCATIONS;
+    } while (next < USES);
+    next = USES + gl_InvocationID;
     uint end = min(parts.plain_end, count);
     if (next < end) do {
         scratch[slot + next].xyz = ring_point(record, place_at(borders[border_of(record)].plain, next - USES));
-        next += CONTROL_INVOCATIONS;
+        next += INVOCATIONS;
     } while (next < end);
     next = parts.plain_end + gl_InvocationID;
     end = min(parts.ends[4], count);
@@ -306,7 +314,7 @@ void run_stencils(Patch record, uint slot, uint level, uint count) {
         Part part = find_part(parts, next);
         Ring ring = use_ring(record, part.number, min(part.end - part.start, count));
         scratch[slot + next].xyz = stencil_point(record, ring, next - part.start);
-        next += CONTROL_INVOCATIONS;
+        next += INVOCATIONS;
     } while (next < end);
     uint number = min(5u + gl_InvocationID, USES - 1u);
     uint place = parts.ends[number - 1u];

@@ -26,7 +26,7 @@ constants! {
     BINDING_SCRATCH = 6;
     /// Frame, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
     BINDING_COUNTERS = 7;
-    /// Frame, binding: `PatchDraw` records, what the host decides about each patch.
+    /// Frame, binding: `PatchDraw` records, what the host decides about each patch; where patches are cut before they are drawn, `SubPatch` records.
     BINDING_DRAWS = 8;
     /// Frame, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
     BINDING_CAPTURE = 9;
@@ -62,10 +62,12 @@ constants! {
     /// Invocations of a workgroup of the shader that computes points.
     POINT_INVOCATIONS = 64;
 
-    /// Invocations of a control shader that runs stencils; also its greatest number of control points.
+    /// The greatest number of control points of a patch whose control shader runs stencils, and of that shader's invocations.
     CONTROL_INVOCATIONS = 32;
     /// The deepest level of a plan.
     HIGHEST_LEVEL = 10;
+    /// Binary logarithm of the greatest tess level that every tessellator does (Vulkan spec, `maxTessellationGenerationLevel`).
+    TESSELLATED_LEVEL = 6;
     /// What a patch is evaluated by: the inside, its four edges, its four corners.
     USES = 9;
     /// So many products of a weight and a vertex the points of a use take at most, for each word of all tables.
@@ -185,6 +187,8 @@ constants! {
     PATCH_NEARBY_CORNER = 128;
     /// A piece of a quad, which its `plan` tells: its column and, 12 bits higher, its row among as many as there are at its depth.
     CHILD_PIECE = 9;
+    /// In a piece's `plan`: its row; its column is below.
+    PIECE_ROW_SHIFT = 12;
     /// In a piece's `plan`: its edge with a crease plus 1, or 0; three bits.
     PIECE_CREASE_SHIFT = 24;
     /// In a piece's `plan`: its depth, how often the ptex face is halved.
@@ -208,6 +212,8 @@ constants! {
     FRAME_COUNT = 32;
     /// Frame flag: patches have levels of their own in each view, as the device decided.
     FRAME_DECIDED = 64;
+    /// Frame flag: numbers of patches are those of sub-patches, which patches are cut into before they are drawn.
+    FRAME_SUB_PATCHES = 128;
     /// Frame flag: where patterns are drawn, the segments of an edge of their lattice; seven bits.
     FRAME_SEGMENTS_SHIFT = 8;
     /// Frame flag: views an instance, 1 but with multiview; six bits.

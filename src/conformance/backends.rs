@@ -7,6 +7,8 @@
 //! Where control points need stencils the tessellator's come through the scratch ring and the others' from a cache: so both residences are compared as
 //! well.
 //!
+//! Where depths ask for more than 64 segments patches are cut into pieces, and the surface is whole all the same.
+//!
 //! A seeded fault turns a bit of a vertex, or gives a patch's edge the tags of another.
 
 use std::collections::{BTreeMap, HashMap};
@@ -20,7 +22,8 @@ use crate::conformance::{Case, Check, Context, Finding, Group, Random};
 use crate::error::Result;
 use crate::gpu::{Backend, Cut, DrawList, Fill, Residence, Shading, SurfaceOptions};
 use crate::mesh::{Model, builtin};
-use crate::method::{DepthTags, METHODS, Method, Pass, Prepared};
+use crate::method::{DepthTags, METHODS, Method, MethodOptions, Pass, Prepared};
+use crate::plan::PlanOptions;
 use crate::tessellation::{Domain, Spacing, lattice_segments};
 
 /// The group.
@@ -72,8 +75,21 @@ fn cases() -> Vec<Case> {
             }
         }
     }
+    cases.extend(PIECES.map(|shape| {
+        let name = format!("backends.pieces.{shape}");
+        let rule = "no edge is open but the boundary's, whether patches are cut into pieces or not";
+        Case::new(
+            name,
+            rule,
+            "manual, Tess levels, Above 64",
+            move |context| pieces(context, &Model::new(builtin(shape)?)),
+        )
+    }));
     cases
 }
+
+/// Shapes of which some patches have more than 64 segments.
+const PIECES: [&str; 3] = ["cube", "ngons", "creased-torus"];
 
 /// What there is to say where a device has no such backend; None where it has.
 fn lacking(context: &Context, backend: Backend) -> Result<Option<Finding>> {
@@ -310,29 +326,65 @@ fn tags(
     let mut random = Random::new(context.settings.seed, "backends.tags");
     let cut = cut(16.0, spacing);
     for _ in 0..3 {
-        let mut prepared = prepare(model, method.name)?;
+        let prepared = prepare(model, method.name)?;
         if let Some(finding) = lacking(context, backend)? {
             return Ok(finding);
         }
-        if context.is_wrong() {
-            // Whatever the levels are, they are not those of the neighbours.
-            let all = prepared.outline.edges().len() as u32;
-            for sides in prepared.passes[0].sides.iter_mut().step_by(2) {
-                *sides = sides.map(|side| (side + all / 2) % all);
-            }
-        }
         let depths = (0..model.mesh().vertex_count()).map(|_| random.between(-0.5, 4.5) as f32);
         let tags = DepthTags::new(depths.collect::<Vec<f32>>());
-        let drawn = Drawn::new(context, model, prepared, backend, Some(tags), cut)?;
-        let arrived: usize = drawn.passes.iter().map(Vec::len).sum();
-        check.hold(arrived as u64 == drawn.expected, || {
-            format!("{arrived} of {} vertices", drawn.expected)
-        });
-        let (open, boundary) = (drawn.open_edges(), drawn.boundary);
-        check.hold(open == boundary, || {
-            format!("{open} open edges instead of {boundary}")
-        });
-        triangles += drawn.triangles.iter().map(Vec::len).sum::<usize>();
+        triangles += whole(context, model, prepared, (backend, tags, cut), &mut check)?;
     }
     Ok(check.finish(format!("{triangles} triangles")))
+}
+
+/// One vertex and the inside of one face are so deep that their patches are cut into pieces.
+fn pieces(context: &Context, model: &Model) -> Result<Finding> {
+    let (mut check, mut triangles) = (Check::default(), 0);
+    let mut random = Random::new(context.settings.seed, "backends.pieces");
+    let (count, options) = (
+        model.mesh().vertex_count(),
+        MethodOptions::from(PlanOptions {
+            max_level: 7,
+            ..PlanOptions::default()
+        }),
+    );
+    for level in [100.0, 128.0] {
+        let prepared = METHODS[0].prepare(model, options)?;
+        let deep = random.below(count as u32) as usize;
+        let depths = (0..count).map(|vertex| match vertex == deep {
+            true => 7.0,
+            false => random.between(-0.5, 3.5) as f32,
+        });
+        let tags = DepthTags::new(depths.collect::<Vec<f32>>()).with_insides([7.0]);
+        let drawn = (Backend::Tessellator, tags, cut(level, Spacing::Equal));
+        triangles += whole(context, model, prepared, drawn, &mut check)?;
+    }
+    Ok(check.finish(format!("{triangles} triangles")))
+}
+
+/// Draws with tags, and holds what comes to be whole: how many triangles.
+fn whole(
+    context: &Context,
+    model: &Model,
+    mut prepared: Prepared,
+    (backend, tags, cut): (Backend, DepthTags, Cut),
+    check: &mut Check,
+) -> Result<usize> {
+    if context.is_wrong() {
+        // Whatever the levels are, they are not those of the neighbours.
+        let all = prepared.outline.edges().len() as u32;
+        for sides in prepared.passes[0].sides.iter_mut().step_by(2) {
+            *sides = sides.map(|side| (side + all / 2) % all);
+        }
+    }
+    let drawn = Drawn::new(context, model, prepared, backend, Some(tags), cut)?;
+    let arrived: usize = drawn.passes.iter().map(Vec::len).sum();
+    check.hold(arrived as u64 == drawn.expected, || {
+        format!("{arrived} of {} vertices", drawn.expected)
+    });
+    let (open, boundary) = (drawn.open_edges(), drawn.boundary);
+    check.hold(open == boundary, || {
+        format!("{open} open edges instead of {boundary}")
+    });
+    Ok(drawn.triangles.iter().map(Vec::len).sum())
 }

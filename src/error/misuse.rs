@@ -29,15 +29,28 @@ pub enum Misuse {
         backend: &'static str,
     },
     /// The backend does not go to such a level.
-    #[error(
-        "the backend {backend} goes to level {greatest} only: geometry shaders have no more invocations on every device"
-    )]
+    #[error("the backend {backend} goes to level {greatest} only")]
     BackendLevel {
         /// The backend's name.
         backend: &'static str,
         /// The greatest level that it does.
         greatest: f32,
     },
+    /// A level above 64 with fractional spacing, whose vertices lie where devices choose.
+    #[error(
+        "levels above 64 are drawn in pieces, which agree on their edges with equal spacing only"
+    )]
+    SubPatchSpacing,
+    /// A level above 64 for patches that are triangles.
+    #[error(
+        "levels above 64 are drawn in pieces of quads, and the method has patches that are triangles"
+    )]
+    SubPatchesOfTriangles,
+    /// A list whose patches may be cut into pieces, for pipelines that know nothing of them.
+    #[error(
+        "levels above 64 are drawn in pieces: make pipelines with PipelineOptions::sub_patches"
+    )]
+    SubPatchPipelines,
     /// A surface that is never drawn.
     #[error("a surface is drawn in one round at least")]
     NoRounds,
@@ -210,8 +223,16 @@ pub enum Misuse {
         /// How many bytes of the buffer the host sees.
         size: usize,
     },
+    /// A tag of the inside of a ptex face that is no depth.
+    #[error("the depth of the inside of ptex face {ptex} is {depth}, and depths are from 0 to 10")]
+    InsideDepth {
+        /// The ptex face, from 0.
+        ptex: usize,
+        /// Its depth.
+        depth: f32,
+    },
     /// A depth tag that is no depth.
-    #[error("the depth tag of control vertex {vertex} is {depth}, and depths are from 0 to 6")]
+    #[error("the depth tag of control vertex {vertex} is {depth}, and depths are from 0 to 10")]
     Depth {
         /// The vertex, from 0.
         vertex: usize,

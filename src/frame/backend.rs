@@ -31,6 +31,8 @@ struct Row {
     name: &'static str,
     /// The greatest level that it goes to.
     greatest_level: f32,
+    /// Whether it may go beyond that in pieces.
+    pieces: bool,
     /// Whether levels and spacing are as they are asked for, and not powers of two, evenly.
     any_level: bool,
     /// Whether its patches may have their control points in the ring.
@@ -63,6 +65,7 @@ static ROWS: [Row; 3] = [
     Row {
         name: "tessellator",
         greatest_level: 64.0,
+        pieces: true,
         any_level: true,
         ring: true,
         decided: true,
@@ -70,7 +73,7 @@ static ROWS: [Row; 3] = [
         bounded: true,
         patterns: false,
         evaluations: |levels, spacing| levels.vertices(spacing),
-        vertices: |levels, spacing| levels.vertices(spacing),
+        vertices: |levels, spacing| levels.different_vertices(spacing),
         triangles: |levels, spacing| levels.triangles(spacing),
         join: |levels, spacing, uv| {
             let triangles = triangulate(levels.domain, uv);
@@ -101,6 +104,7 @@ static ROWS: [Row; 3] = [
 const LATTICE: Row = Row {
     name: "",
     greatest_level: 64.0,
+    pieces: false,
     any_level: false,
     ring: false,
     decided: false,
@@ -168,7 +172,7 @@ impl Backend {
         self.row().name
     }
 
-    /// The greatest level that it goes to.
+    /// The greatest level that it cuts a patch to at once.
     pub fn greatest_level(self) -> f32 {
         self.row().greatest_level
     }
@@ -209,7 +213,7 @@ impl Backend {
             return cut;
         }
         Cut {
-            level: (cut.level.clamp(1.0, 64.0).ceil() as u32).next_power_of_two() as f32,
+            level: (cut.level.clamp(1.0, 1024.0).ceil() as u32).next_power_of_two() as f32,
             spacing: Spacing::Equal,
         }
     }
@@ -268,7 +272,10 @@ impl Backend {
             level,
             spacing: Spacing::Equal,
         };
-        let greatest = self.greatest_level();
+        let greatest = match self.row().pieces {
+            true => Spacing::Equal.greatest(),
+            false => self.greatest_level(),
+        };
         if self.cut(cut).level > greatest {
             return Err(Error::Misuse(Misuse::BackendLevel { backend, greatest }));
         }

@@ -1,8 +1,10 @@
-//! Batches: runs of patches that fit into the scratch ring together, and into whatever else bounds a draw.
+//! Batches: runs of patches, or of sub-patches, that fit into the scratch ring together, and into whatever else bounds a draw.
 
 use std::ops::Range;
 
+use crate::abi;
 use crate::error::{Error, Misuse, Result};
+use crate::frame::sub_patches::{Drawn, has_sub_patches, sub_patches};
 use crate::frame::{Backend, Cut};
 use crate::method::{Pass, Prepared};
 
@@ -45,25 +47,28 @@ pub(super) struct Bounds {
     pub instance_vertices: Option<u32>,
 }
 
-/// Cuts all passes into batches within the bounds, at a cut as the backend makes it.
+/// Cuts what is drawn of all passes into batches within the bounds, at a cut as the backend makes it.
 ///
 /// # Errors
 /// [`Misuse::RingTooSmall`] when one patch alone needs more points than the ring has.
-pub(super) fn batches(prepared: &Prepared, cut: Cut, bounds: Bounds) -> Result<Vec<Run>> {
+pub(super) fn batches<'a>(
+    drawn: impl IntoIterator<Item = Drawn<'a>>,
+    bounds: Bounds,
+) -> Result<Vec<Run>> {
     let mut runs = Vec::new();
     let mut ring_batch = 0;
-    for (number, pass) in prepared.passes.iter().enumerate() {
-        let most = bounds.patches_per_instance(pass, cut);
+    for (number, drawn) in drawn.into_iter().enumerate() {
+        let most = bounds.patches_per_instance(drawn);
         let mut first = 0;
-        let extent = pass.extent();
+        let extent = drawn.count();
         while (first as usize) < extent {
             let mut run = Run {
                 pass: number,
                 ring_batch,
-                ..bounds.longest(pass, cut, first as usize..extent)?
+                ..bounds.longest(drawn, first as usize..extent)?
             };
-            bounds.trim(&mut run, pass, cut, most);
-            ring_batch += u32::from(bounds.uses_ring(pass));
+            bounds.trim(&mut run, drawn, most);
+            ring_batch += u32::from(bounds.uses_ring(drawn.pass));
             first = run.patches().end;
             runs.push(run);
         }
@@ -78,18 +83,18 @@ impl Bounds {
     }
 
     /// How many patches an instance may hold: of those that are cut finest.
-    fn patches_per_instance(&self, pass: &Pass, cut: Cut) -> u32 {
+    fn patches_per_instance(&self, drawn: Drawn<'_>) -> u32 {
         let Some(most) = self.instance_vertices else {
             return u32::MAX;
         };
-        let levels = (0..pass.patches.len()).filter_map(|patch| cut.levels(pass, patch));
+        let levels = (0..drawn.count()).filter_map(|number| drawn.levels(number));
         let greatest = levels.map(|levels| levels.greatest());
-        let segments = cut.spacing.segments(greatest.fold(1.0, f32::max));
+        let segments = drawn.cut.spacing.segments(greatest.fold(1.0, f32::max));
         patches_per_instance(most, segments)
     }
 
     /// As many of some patches, from the first on, as fit, one at least; as one instance.
-    fn longest(&self, pass: &Pass, cut: Cut, patches: Range<usize>) -> Result<Run> {
+    fn longest(&self, drawn: Drawn<'_>, patches: Range<usize>) -> Result<Run> {
         let mut run = Run {
             pass: 0,
             first: patches.start as u32,
@@ -100,7 +105,7 @@ impl Bounds {
             ring_batch: 0,
         };
         for patch in patches {
-            let [points, vertices] = self.needs(pass, cut, patch);
+            let [points, vertices] = self.needs(drawn, patch);
             let room = self.ring.unwrap_or(0);
             if points > room {
                 return Err(Error::Misuse(Misuse::RingTooSmall {
@@ -122,22 +127,22 @@ impl Bounds {
 
     /// Leaves out the last patches that would make an instance by themselves: two draws that use the ring would need a barrier between them,
     /// since synchronization is a matter of whole buffers.
-    fn trim(&self, run: &mut Run, pass: &Pass, cut: Cut, most: u32) {
+    fn trim(&self, run: &mut Run, drawn: Drawn<'_>, most: u32) {
         let end = run.patches().end;
         [run.per_instance, run.instances] = full_instances(run.per_instance, most);
         for patch in run.patches().end..end {
-            let [points, vertices] = self.needs(pass, cut, patch as usize);
+            let [points, vertices] = self.needs(drawn, patch as usize);
             run.points -= points;
             run.vertices -= vertices;
         }
     }
 
-    /// Points and vertices of a patch.
-    fn needs(&self, pass: &Pass, cut: Cut, patch: usize) -> [u32; 2] {
-        let levels = cut.levels(pass, patch);
-        let vertices = levels.map_or(0, |levels| self.backend.evaluations(&levels, cut.spacing));
-        let points = match self.uses_ring(pass) {
-            true => cut.points(pass, patch),
+    /// Points and vertices of a patch, or of a piece.
+    fn needs(&self, drawn: Drawn<'_>, number: usize) -> [u32; 2] {
+        let (levels, spacing) = (drawn.levels(number), drawn.cut.spacing);
+        let vertices = levels.map_or(0, |levels| self.backend.evaluations(&levels, spacing));
+        let points = match self.uses_ring(drawn.pass) {
+            true => drawn.points(number),
             false => 0,
         };
         [points, vertices]
@@ -178,11 +183,28 @@ pub(super) fn most_ring_batches(
     };
     let mut most = 0;
     for cut in cuts {
-        let runs = batches(prepared, bounds.backend.cut(cut), whole)?;
+        let cut = bounds.backend.cut(cut);
+        let passes = prepared.passes.iter();
+        let cuts: Vec<_> = passes
+            .clone()
+            .map(|pass| sub_patches_at(pass, cut))
+            .collect();
+        let drawn = passes.zip(&cuts).map(|(pass, sub_patches)| Drawn {
+            pass,
+            cut,
+            tagged: None,
+            sub_patches: sub_patches.as_deref(),
+        });
+        let runs = batches(drawn, whole)?;
         let ring = |run: &&Run| whole.uses_ring(&prepared.passes[run.pass]);
         most = most.max(runs.iter().filter(ring).count() as u32);
     }
     Ok(most * (1 + u32::from(bounds.instance_vertices.is_some())))
+}
+
+/// The sub-patches of a pass at a cut, the same for all of it; None where patches are drawn whole.
+fn sub_patches_at(pass: &Pass, cut: Cut) -> Option<Vec<abi::SubPatch>> {
+    has_sub_patches(cut.level).then(|| sub_patches(pass, |patch| cut.levels(pass, patch)))
 }
 
 #[cfg(test)]

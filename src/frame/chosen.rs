@@ -45,6 +45,12 @@ impl DrawList {
         };
         let passes = prepared.passes.iter().enumerate();
         self.tagged = Some(passes.map(of_pass).collect());
+        let sub_patches = self.sub_patches.iter_mut().flatten();
+        for (number, own) in sub_patches.enumerate() {
+            for piece in own.iter_mut().filter(|p| !chosen(number, p.patch_number)) {
+                (piece.edges, piece.inside) = ([0.0; 4], 0.0);
+            }
+        }
         self.number = new_number();
         self.decide(prepared);
         Ok(self)

@@ -7,7 +7,7 @@ use crate::tessellation::{Levels, Spacing, levels, required_level};
 /// How finely a surface is cut, the same for all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cut {
-    /// The tess level of quads, 1..=64.
+    /// The tess level of quads, 1..=64; up to 1024 with equal spacing, for surfaces that are [made for it](super::SurfaceOptions::greatest_level).
     pub level: f32,
     /// Spacing.
     pub spacing: Spacing,
@@ -30,10 +30,15 @@ impl Cut {
         ))
     }
 
-    /// The points that a patch needs in the ring; none where there is no such patch.
+    /// The points that a patch needs in the ring, or each piece of it; none where there is no such patch.
     pub fn points(&self, pass: &Pass, patch: usize) -> u32 {
-        let level = self.plan_level(pass, patch);
-        level.map_or(0, |level| pass.points(patch, level))
+        let levels = self.levels(pass, patch);
+        levels.map_or(0, |levels| Cut::points_of(pass, patch, &levels))
+    }
+
+    /// The same at these levels.
+    pub(super) fn points_of(pass: &Pass, patch: usize, levels: &Levels) -> u32 {
+        pass.points(patch, required_level(levels, abi::HIGHEST_LEVEL))
     }
 
     /// The products of a weight and a vertex that these points take; none where there is no such patch.
@@ -47,7 +52,11 @@ impl Cut {
     pub fn ring_bytes(&self, prepared: &Prepared) -> u64 {
         let of_pass = |pass: &Pass| {
             let patches = 0..pass.patches.len();
-            let points = patches.map(|patch| u64::from(self.points(pass, patch)));
+            let points = patches.map(|patch| {
+                let levels = self.levels(pass, patch);
+                let depth = levels.map_or(0, |levels| levels.piece_depth());
+                u64::from(self.points(pass, patch)) << (2 * depth)
+            });
             points.sum::<u64>()
         };
         let passes = prepared.passes.iter();
@@ -64,7 +73,7 @@ impl Cut {
     /// The cut at which a cache has the control points of a plan level.
     fn of_plan_level(level: u32) -> Cut {
         Cut {
-            level: (1u32 << level.min(6)) as f32,
+            level: (1u32 << level.min(abi::HIGHEST_LEVEL)) as f32,
             spacing: Spacing::Equal,
         }
     }
@@ -83,10 +92,12 @@ impl Cut {
             (0..pass.patches.len())
                 .all(|patch| cached.plan_level(pass, patch) >= self.plan_level(pass, patch))
         };
-        (0..=6).find(enough).unwrap_or(6)
+        (0..abi::HIGHEST_LEVEL)
+            .find(enough)
+            .unwrap_or(abi::HIGHEST_LEVEL)
     }
 
-    /// The vertices that the tessellator makes of a patch; none where there is no such patch.
+    /// The vertices that the tessellator makes of a patch, or of its pieces; none where there is no such patch.
     pub fn vertices(&self, pass: &Pass, patch: usize) -> u32 {
         let levels = self.levels(pass, patch);
         levels.map_or(0, |levels| levels.vertices(self.spacing))

@@ -7,9 +7,10 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
+use crate::frame::sub_patches::{Drawn, has_sub_patches, join, levels_of, sub_patches};
 use crate::frame::{Backend, Cut, Decides, Draw, Residence, SurfaceOptions};
 use crate::method::{DepthTags, Pass, Prepared};
-use crate::tessellation::{Levels, levels_of_edges};
+use crate::tessellation::{Levels, Piece, levels_of_edges_and_inside};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
 ///
@@ -30,6 +31,8 @@ pub struct DrawList {
     /// By pass and patch, where depth tags are given, or some are chosen; level 0 where nothing is drawn.
     pub(super) tagged: Option<Vec<Vec<Levels>>>,
     records: Vec<Vec<abi::PatchDraw>>,
+    /// By pass, where patches may be cut before they are drawn.
+    pub(super) sub_patches: Option<Vec<Vec<abi::SubPatch>>>,
     instances: Vec<Vec<u32>>,
     patterns: Vec<Levels>,
 }
@@ -50,13 +53,24 @@ impl DrawList {
         options.check(prepared)?;
         let cut = options.cut(cut)?;
         let bounds = options.bounds(instance_vertices);
-        let runs = batches(prepared, cut, bounds)?;
-        let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
         if tags.is_some() && options.decides == Decides::Device {
             let what = "depth tags";
             return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
         }
         let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
+        let tagged = tagged.transpose()?;
+        let cut_first =
+            has_sub_patches(cut.level).then(|| all_sub_patches(prepared, cut, tagged.as_deref()));
+        let passes = prepared.passes.iter().enumerate();
+        let (by_tags, by_pieces) = (tagged.as_ref(), cut_first.as_ref());
+        let each = passes.map(|(number, pass)| Drawn {
+            pass,
+            cut,
+            tagged: by_tags.map(|all: &Vec<Vec<Levels>>| all[number].as_slice()),
+            sub_patches: by_pieces.map(|all| all[number].as_slice()),
+        });
+        let runs = batches(each, bounds)?;
+        let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
         let mut list = DrawList {
             number: new_number(),
             prepared: [prepared.number(), prepared.version()],
@@ -67,8 +81,9 @@ impl DrawList {
                 .then(|| cut.cached_level(prepared)),
             ring_batches: runs.iter().filter(uses_ring).count() as u32,
             draws: Vec::new(),
-            tagged: tagged.transpose()?,
+            tagged,
             records: Vec::new(),
+            sub_patches: cut_first,
             instances: Vec::new(),
             patterns: Vec::new(),
             runs,
@@ -101,7 +116,8 @@ impl DrawList {
     /// Fills in draws, and what the host decides about each patch where it does.
     pub(super) fn decide(&mut self, prepared: &Prepared) {
         (self.draws, self.records, self.instances) = Default::default();
-        let records = self.options.has_host_slots() || self.tagged.is_some();
+        let records =
+            self.sub_patches.is_none() && (self.options.has_host_slots() || self.tagged.is_some());
         let patterns = self.options.backend.has_patterns();
         let mut all = Patterns::default();
         for pass in &prepared.passes {
@@ -111,6 +127,7 @@ impl DrawList {
         }
         for number in 0..self.runs.len() {
             let run = self.runs[number].clone();
+            self.give_slots(prepared, &run);
             if records {
                 let decided = self.decided(prepared, &run);
                 self.records[run.pass].extend(decided);
@@ -131,25 +148,58 @@ impl DrawList {
         self.patterns = all.all;
     }
 
-    /// The records of a run's patches. Slots have room for the cut's level, which no tag exceeds.
-    fn decided(&self, prepared: &Prepared, run: &Run) -> Vec<abi::PatchDraw> {
-        let pass = &prepared.passes[run.pass];
+    /// What is drawn of a pass.
+    fn drawn<'a>(&'a self, prepared: &'a Prepared, pass: usize) -> Drawn<'a> {
+        Drawn {
+            pass: &prepared.passes[pass],
+            cut: self.cut,
+            tagged: self.tagged.as_ref().map(|all| all[pass].as_slice()),
+            sub_patches: self.sub_patches.as_ref().map(|all| all[pass].as_slice()),
+        }
+    }
+
+    /// The slots of what a run draws: they follow one another.
+    fn slots(&self, prepared: &Prepared, run: &Run) -> Vec<u32> {
+        let drawn = self.drawn(prepared, run.pass);
         let mut next = 0;
-        run.patches()
-            .map(|patch| {
-                let levels = self.levels(prepared, run.pass, patch);
-                let slot = next;
-                next += self.cut.points(pass, patch as usize);
-                // Nothing is drawn of a vacant slot.
-                let drawn = levels.map(|levels| (levels.edges, levels.inside));
-                let (edges, inside) = drawn.unwrap_or_default();
-                abi::PatchDraw {
-                    slot,
-                    edges,
-                    inside,
-                }
-            })
-            .collect()
+        let slot = |number: u32| {
+            let slot = next;
+            next += drawn.points(number as usize);
+            slot
+        };
+        run.patches().map(slot).collect()
+    }
+
+    /// Gives the sub-patches of a run their slots, where there are sub-patches.
+    fn give_slots(&mut self, prepared: &Prepared, run: &Run) {
+        let slots = match self.sub_patches {
+            Some(_) => self.slots(prepared, run),
+            None => return,
+        };
+        let own = self.sub_patches.iter_mut().map(|all| &mut all[run.pass]);
+        for own in own {
+            let drawn = run.patches().start as usize..run.patches().end as usize;
+            for (sub_patch, slot) in own[drawn].iter_mut().zip(&slots) {
+                sub_patch.slot = *slot;
+            }
+        }
+    }
+
+    /// The records of a run's patches.
+    fn decided(&self, prepared: &Prepared, run: &Run) -> Vec<abi::PatchDraw> {
+        let slots = self.slots(prepared, run);
+        let record = |(patch, slot): (u32, u32)| {
+            let levels = self.levels(prepared, run.pass, patch);
+            // Nothing is drawn of a vacant slot.
+            let drawn = levels.map(|levels| (levels.edges, levels.inside));
+            let (edges, inside) = drawn.unwrap_or_default();
+            abi::PatchDraw {
+                slot,
+                edges,
+                inside,
+            }
+        };
+        run.patches().zip(slots).map(record).collect()
     }
 
     /// The cut, as the backend makes it.
@@ -198,6 +248,7 @@ impl DrawList {
         self.options.has_host_slots()
             || self.options.backend.has_patterns()
             || self.tagged.is_some()
+            || self.sub_patches.is_some()
     }
 
     /// Whether patches have levels of their own.
@@ -205,7 +256,19 @@ impl DrawList {
         self.tagged.is_some()
     }
 
-    /// What is decided about each patch of a pass; empty where the cut says all, or there is no such pass.
+    /// Whether patches may be cut into pieces before they are drawn.
+    pub fn has_sub_patches(&self) -> bool {
+        self.sub_patches.is_some()
+    }
+
+    /// What is drawn of a pass where patches may be cut into pieces first, each by itself: in the order of patches, row by row; empty where there are none, or
+    /// no such pass.
+    pub fn sub_patches(&self, pass: usize) -> &[abi::SubPatch] {
+        let all = self.sub_patches.as_ref();
+        all.and_then(|all| all.get(pass)).map_or(&[], Vec::as_slice)
+    }
+
+    /// What is decided about each patch of a pass; empty where the cut says all, sub-patches have it, or there is no such pass.
     pub fn records(&self, pass: usize) -> &[abi::PatchDraw] {
         self.records.get(pass).map_or(&[], Vec::as_slice)
     }
@@ -246,15 +309,14 @@ impl DrawList {
     /// [chosen](Self::only).
     pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Option<Levels> {
         let patches = prepared.passes.get(pass)?;
-        let levels = match &self.tagged {
-            Some(_) if patches.is_vacant(patch as usize) => None,
-            Some(levels) => levels.get(pass)?.get(patch as usize).copied(),
-            None => self.cut.levels(patches, patch as usize),
+        let tagged = match &self.tagged {
+            Some(all) => Some(all.get(pass)?.as_slice()),
+            None => None,
         };
-        levels.filter(|levels| levels.inside > 0.0)
+        levels_of(patches, self.cut, tagged, patch as usize)
     }
 
-    /// The vertices of a patch; none where there is no such patch.
+    /// The different vertices of a patch; none where there is no such patch.
     pub fn vertices(&self, prepared: &Prepared, pass: usize, patch: u32) -> u32 {
         let Some(levels) = self.levels(prepared, pass, patch) else {
             return 0;
@@ -271,7 +333,14 @@ impl DrawList {
         patch: u32,
         uv: &[[f32; 2]],
     ) -> Option<Vec<[u32; 3]>> {
-        self.join(&self.levels(prepared, pass, patch)?, uv)
+        let levels = self.levels(prepared, pass, patch)?;
+        match levels.piece_depth() {
+            depth @ 1.. if self.has_sub_patches() => {
+                let patch = &prepared.passes[pass].patches[patch as usize];
+                join(patch, &levels, Piece::all(depth), uv)
+            }
+            _ => self.join(&levels, uv),
+        }
     }
 
     /// The same of a patch at levels that a device has decided.
@@ -309,9 +378,26 @@ impl<'a> Batch<'a> {
         self.run().pass
     }
 
-    /// The patches.
+    /// The patches; of the first and the last there may be pieces in other batches.
     pub fn patches(&self) -> Range<u32> {
+        match self.sub_patches() {
+            [] => self.drawn(),
+            [only] => only.patch_number..only.patch_number + 1,
+            [first, .., last] => first.patch_number..last.patch_number + 1,
+        }
+    }
+
+    /// The numbers of what is drawn: of patches, or where these may be cut into pieces, of [`DrawList::sub_patches`].
+    pub fn drawn(&self) -> Range<u32> {
         self.run().patches()
+    }
+
+    /// Of [`DrawList::sub_patches`] those that it draws.
+    pub(super) fn sub_patches(&self) -> &'a [abi::SubPatch] {
+        let drawn = self.drawn();
+        let all = self.list.sub_patches(self.pass());
+        all.get(drawn.start as usize..drawn.end as usize)
+            .unwrap_or_default()
     }
 
     /// Points that its patches need in the ring.
@@ -319,7 +405,7 @@ impl<'a> Batch<'a> {
         self.run().points
     }
 
-    /// Vertices that are captured of its patches; fewer where depth tags lower their levels.
+    /// Vertices that are captured of its patches, each of them so often as pieces have it.
     pub fn vertices(&self) -> u32 {
         self.run().vertices
     }
@@ -340,6 +426,19 @@ impl<'a> Batch<'a> {
     }
 }
 
+/// The sub-patches of each pass.
+fn all_sub_patches(
+    prepared: &Prepared,
+    cut: Cut,
+    tagged: Option<&[Vec<Levels>]>,
+) -> Vec<Vec<abi::SubPatch>> {
+    let of_pass = |(number, pass): (usize, &Pass)| {
+        let tagged = tagged.map(|all| all[number].as_slice());
+        sub_patches(pass, |patch| levels_of(pass, cut, tagged, patch))
+    };
+    prepared.passes.iter().enumerate().map(of_pass).collect()
+}
+
 /// The levels that depth tags give to all patches, at a cut as the backend makes it.
 fn tagged_levels(
     prepared: &Prepared,
@@ -349,19 +448,35 @@ fn tagged_levels(
 ) -> Result<Vec<Vec<Levels>>> {
     prepared.check_count("depth tags", tags.depths.len())?;
     let mut tagged = tags.depths.iter().copied().enumerate();
-    if let Some((vertex, depth)) = tagged.find(|(_, depth)| !(0.0..=6.0).contains(depth)) {
+    let deepest = DepthTags::DEEPEST;
+    if let Some((vertex, depth)) = tagged.find(|(_, depth)| !(0.0..=deepest).contains(depth)) {
         return Err(Error::Misuse(Misuse::Depth { vertex, depth }));
     }
-    let sides: Vec<f32> = prepared.outline.depths(&tags.depths)?;
-    let level = |side: u32| backend.level_of(sides[side as usize]).min(cut.level);
+    let mut insides = tags.insides.iter().copied().enumerate();
+    if let Some((ptex, depth)) = insides.find(|(_, depth)| !(0.0..=deepest).contains(depth)) {
+        return Err(Error::Misuse(Misuse::InsideDepth { ptex, depth }));
+    }
+    let depths: Vec<f32> = prepared.outline.depths(&tags.depths)?;
+    let level = |depth: f32| {
+        let level = backend.level_of(depth).min(cut.level);
+        // Where vertices are counted levels are whole.
+        if has_sub_patches(cut.level) {
+            level.ceil()
+        } else {
+            level
+        }
+    };
+    let inside = |patch: &abi::Patch| match tags.insides.get(patch.ptex as usize) {
+        Some(&depth) if backend.takes_any_level() => level(depth),
+        _ => 0.0,
+    };
     let of_pass = |pass: &Pass| {
-        let patches = pass.patches.iter().zip(&pass.sides);
-        patches
-            .map(|(patch, sides)| {
-                let edges = sides.map(level);
-                levels_of_edges(pass.domain, patch, edges, cut.spacing, pass.max_level)
-            })
-            .collect()
+        let (domain, spacing, max_level) = (pass.domain, cut.spacing, pass.max_level);
+        let levels = |(patch, sides): (&abi::Patch, &[u32; 4])| {
+            let edges = sides.map(|side| level(depths[side as usize]));
+            levels_of_edges_and_inside(domain, patch, edges, inside(patch), spacing, max_level)
+        };
+        pass.patches.iter().zip(&pass.sides).map(levels).collect()
     };
     Ok(prepared.passes.iter().map(of_pass).collect())
 }

@@ -4,6 +4,7 @@
 //! of vello's `Recording`: commands as data.
 
 mod backend;
+mod batch;
 mod batches;
 mod chosen;
 mod culling;
@@ -16,6 +17,7 @@ mod outcome;
 mod patterns;
 mod residence;
 mod seen;
+mod sub_patches;
 mod tessellated;
 
 pub use backend::Backend;

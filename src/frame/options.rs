@@ -1,10 +1,17 @@
 //! How a surface uses the device.
 
+#[cfg(feature = "vulkan")]
+use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::Bounds;
+use crate::frame::sub_patches::has_sub_patches;
+#[cfg(feature = "vulkan")]
+use crate::frame::sub_patches::most_sub_patches;
 use crate::frame::{Backend, Cut, Residence};
+#[cfg(feature = "vulkan")]
+use crate::method::Pass;
 use crate::method::Prepared;
-use crate::tessellation::Spacing;
+use crate::tessellation::{Domain, Spacing};
 
 /// Who gives patches their slots in the scratch ring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +55,9 @@ pub struct SurfaceOptions {
     /// Counts the vertices of each patch as they are evaluated, so that `gpu::TessellatedSurface::arrival` tells whether the device lost any.
     /// Costs an atomic operation a vertex. Not together with a capture, which tells as much.
     pub count_vertices: bool,
-    /// The greatest level that will be drawn, 1..=64; for [`Backend::Geometry`] at most 32.
+    /// The greatest level that will be drawn, 1..=64; for [`Backend::Geometry`] at most 32. Up to 1024 for [`Backend::Tessellator`] where the host decides and
+    /// patches are quads: those with more than 64 segments are cut into pieces before they are drawn, at equal spacing. What is drawn then takes 32 bytes a
+    /// piece; pipelines are made [for it](crate::gpu::PipelineOptions::sub_patches).
     pub greatest_level: f32,
     /// How many times the batches are drawn after one `cmd_prepare`, 1 at least; see
     /// [`DrawList::round`](super::DrawList::round).
@@ -99,9 +108,27 @@ impl SurfaceOptions {
             return Err(Error::Misuse(Misuse::CountedAndCaptured));
         }
         self.check_decides()?;
-        check_level(self.greatest_level, MAX_LEVEL)?;
+        check_level(self.greatest_level, Spacing::Equal.greatest())?;
+        self.check_sub_patches(prepared)?;
         self.backend
             .check(prepared, self.residence, self.greatest_level)
+    }
+
+    /// # Errors
+    /// [`Misuse::SubPatchesOfTriangles`] and [`Misuse::DecidedByDevice`].
+    fn check_sub_patches(&self, prepared: &Prepared) -> Result<()> {
+        let mut passes = prepared.passes.iter();
+        match () {
+            () if !self.has_sub_patches() => Ok(()),
+            () if self.decides == Decides::Device => {
+                let what = "levels above 64";
+                Err(Error::Misuse(Misuse::DecidedByDevice { what }))
+            }
+            () if passes.any(|pass| pass.domain == Domain::Triangles) => {
+                Err(Error::Misuse(Misuse::SubPatchesOfTriangles))
+            }
+            () => Ok(()),
+        }
     }
 
     /// # Errors
@@ -118,13 +145,35 @@ impl SurfaceOptions {
         Err(Error::Misuse(Misuse::DecidedByDevice { what }))
     }
 
+    /// Whether patches may have more segments than a tessellator makes, so that pipelines have to know of pieces.
+    pub fn has_sub_patches(&self) -> bool {
+        has_sub_patches(self.greatest_level)
+    }
+
+    /// The bytes of all sub-patches that a pass may have.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn sub_patch_bytes(&self, pass: &Pass) -> u64 {
+        match self.has_sub_patches() {
+            true => size_of::<abi::SubPatch>() as u64 * most_sub_patches(pass, self.greatest_level),
+            false => 0,
+        }
+    }
+
     /// A cut as the backend makes it.
     ///
     /// # Errors
-    /// [`Misuse::Level`] for a level that is none, or above the greatest.
+    /// [`Misuse::Level`] for a level that is none, or above the greatest; [`Misuse::SubPatchSpacing`].
     pub(super) fn cut(&self, cut: Cut) -> Result<Cut> {
         check_level(cut.level, self.greatest_level)?;
-        Ok(self.backend.cut(cut))
+        if cut.level > cut.spacing.greatest() {
+            return Err(Error::Misuse(Misuse::SubPatchSpacing));
+        }
+        // Where vertices are counted levels are whole.
+        let level = match has_sub_patches(cut.level) {
+            true => cut.level.ceil(),
+            false => cut.level,
+        };
+        Ok(self.backend.cut(Cut { level, ..cut }))
     }
 
     /// What bounds a batch, with an instance's vertices where the driver bounds those.
@@ -155,14 +204,11 @@ impl SurfaceOptions {
     /// The cuts that need the most batches.
     pub(crate) fn greatest_cuts(&self) -> [Cut; 2] {
         [Spacing::Equal, Spacing::FractionalEven].map(|spacing| Cut {
-            level: self.greatest_level,
+            level: self.greatest_level.min(spacing.greatest()),
             spacing,
         })
     }
 }
-
-/// What tessellators do at most.
-const MAX_LEVEL: f32 = 64.0;
 
 fn check_level(level: f32, greatest: f32) -> Result<()> {
     // What is no number is not contained either.

@@ -59,7 +59,7 @@ impl Drawing<'_> {
     /// count of each patch, so that vertices which a device evaluates twice do not stand in for others that are missing.
     ///
     /// Needs [`count_vertices`](super::SurfaceOptions::count_vertices), or [`capture_vertices`](super::SurfaceOptions::capture_vertices) and
-    /// batches of a single pass, each given once. Meaningful when [`cmd_read_back`](super::FrameSlot::cmd_read_back) has been executed, where no patch
+    /// batches of a single pass, each given once; where patches are cut into pieces, a single batch. Meaningful when [`cmd_read_back`](super::FrameSlot::cmd_read_back) has been executed, where no patch
     /// overflowed.
     ///
     /// # Errors
@@ -84,14 +84,11 @@ impl Drawing<'_> {
 
     /// How often a patch of a batch is evaluated at least, each time that it is drawn.
     fn evaluations(&self, batch: Batch<'_>, patch: u32) -> u32 {
-        let (list, pass) = (batch.list(), batch.pass());
-        let (prepared, options) = (self.tables.prepared(), self.slot.options());
-        if !options.count_vertices {
-            return list.vertices(prepared, pass, patch);
+        let prepared = self.tables.prepared();
+        match self.slot.options().count_vertices {
+            true => batch.evaluations(prepared, patch),
+            false => batch.different_vertices(prepared, patch),
         }
-        let levels = list.levels(prepared, pass, patch);
-        let spacing = list.cut().spacing;
-        levels.map_or(0, |levels| options.backend.evaluations(&levels, spacing))
     }
 
     /// By pass and patch: vertices counted, or different ones captured. What is captured does not tell its pass, and counts for each.

@@ -41,7 +41,7 @@ impl Drawing<'_> {
     /// # Errors
     /// [`Misuse::OtherSurface`], [`Misuse::NotWritten`], [`Misuse::NotDecided`],
     /// [`Misuse::View`], [`Misuse::ViewsInRing`],
-    /// [`Misuse::ManyViews`], [`Misuse::Eyes`], [`Misuse::NotCached`], [`Misuse::OtherPipelines`], [`Misuse::BarrierInRendering`] and
+    /// [`Misuse::ManyViews`], [`Misuse::Eyes`], [`Misuse::NotCached`], [`Misuse::OtherPipelines`], [`Misuse::SubPatchPipelines`], [`Misuse::BarrierInRendering`] and
     /// [`Misuse::OwnSets`]; nothing has been recorded then.
     ///
     /// # Safety
@@ -205,6 +205,7 @@ impl Drawing<'_> {
             flags: self.slot.flags()
                 | flag(fractional_even, abi::FRAME_FRACTIONAL_EVEN)
                 | flag(batch.list().is_tagged(), abi::FRAME_ADAPTIVE)
+                | flag(batch.list().has_sub_patches(), abi::FRAME_SUB_PATCHES)
                 | flag(
                     self.slot.options().decides == Decides::Device,
                     abi::FRAME_DECIDED,
@@ -212,7 +213,7 @@ impl Drawing<'_> {
                 | segments << abi::FRAME_SEGMENTS_SHIFT
                 | eyes << abi::FRAME_EYES_SHIFT,
             first_patch: first,
-            end_patch: batch.patches().end,
+            end_patch: batch.drawn().end,
             patches_per_instance: per_instance,
             counter: abi::COUNTER_BATCHES + batch.ring_batch(),
             instances,

@@ -8,6 +8,7 @@ mod extra;
 
 use ash::{khr, vk};
 
+use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::gpu::features::extension::has_extension;
 use crate::gpu::sets::STORAGE_BUFFERS;
@@ -51,6 +52,7 @@ pub struct Enabled {
     pub(super) multiview: bool,
     pub(super) dynamic_rendering: bool,
     pub(super) max_storage_buffer_range: u32,
+    pub(super) subgroup_size: u32,
 }
 
 impl Enabled {
@@ -66,6 +68,18 @@ impl Enabled {
     /// That multiview is on as well, for tessellation too, as this struct shows; of `VkPhysicalDeviceVulkan11Features` take over the members.
     pub fn with_multiview(mut self, features: &vk::PhysicalDeviceMultiviewFeatures<'_>) -> Enabled {
         self.multiview = features.multiview != 0 && features.multiview_tessellation_shader != 0;
+        self
+    }
+
+    /// How many invocations control shaders have that share their work: as many as run abreast, from 8 to [`abi::CONTROL_INVOCATIONS`]. With more of them a device
+    /// would go again through what is done once a patch; lanes beyond what it runs abreast gain nothing.
+    pub(super) fn control_invocations(&self) -> u32 {
+        self.subgroup_size.clamp(8, abi::CONTROL_INVOCATIONS)
+    }
+
+    /// As if the device ran so many invocations abreast (`subgroupSize`): for measurements. What is drawn is the same, bit by bit.
+    pub fn with_subgroup_size(mut self, size: u32) -> Enabled {
+        self.subgroup_size = size;
         self
     }
 
@@ -98,6 +112,8 @@ pub struct Support {
     pub storage_buffers: u32,
     /// Bytes that a shader sees of a storage buffer (`maxStorageBufferRange`): no table, and no ring, is larger.
     pub max_storage_buffer_range: u32,
+    /// How many invocations the device runs abreast (`subgroupSize`).
+    pub subgroup_size: u32,
     /// What we use where it exists.
     pub optional: OptionalFeatures,
     /// `maintenance4` comes from an extension that has to be named, as the device is below Vulkan 1.3.
@@ -110,8 +126,11 @@ impl Support {
     /// # Safety
     /// `physical` belongs to the live `instance`, which was created for Vulkan 1.2 or later.
     pub unsafe fn query(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Support {
-        // SAFETY: the caller's instance and physical device, here and below.
-        let properties = unsafe { instance.get_physical_device_properties(physical) };
+        let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
+        // SAFETY: the caller's instance and physical device, here and below. A device of Vulkan 1.0 leaves the struct as it is, and will not do anyway.
+        unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+        let properties = properties.properties;
         let api_version = properties.api_version;
         // SAFETY: as above.
         let queues = unsafe { instance.get_physical_device_queue_family_properties(physical) };
@@ -119,6 +138,7 @@ impl Support {
             api_version,
             storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
             max_storage_buffer_range: properties.limits.max_storage_buffer_range,
+            subgroup_size: subgroups.subgroup_size,
             graphics_family: queues
                 .iter()
                 .position(|family| {
@@ -200,6 +220,7 @@ impl Support {
             multiview: false,
             dynamic_rendering: false,
             max_storage_buffer_range: self.max_storage_buffer_range,
+            subgroup_size: self.subgroup_size,
         })
     }
 

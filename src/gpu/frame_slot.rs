@@ -163,10 +163,9 @@ impl FrameSlot {
                 Decides::Host => 1,
                 Decides::Device => u64::from(self.options.views),
             };
-            let (draws, instances) = (
-                size_of::<abi::PatchDraw>() as u64 * patches * views,
-                4 * patches,
-            );
+            let draws = size_of::<abi::PatchDraw>() as u64 * patches * views;
+            let draws = draws.max(self.options.sub_patch_bytes(pass));
+            let instances = 4 * patches;
             let written = MemoryLocation::CpuToGpu;
             let mut capture = numbers.capture;
             // SAFETY: as above.
@@ -224,7 +223,7 @@ impl FrameSlot {
         DrawList::new(prepared, &self.options, vertices, cut, tags)
     }
 
-    /// Brings to the device what the host decided about patches: slots in the ring, levels by depth tags, refinement patterns.
+    /// Brings to the device what the host decided about patches: slots in the ring, levels by depth tags, refinement patterns, pieces.
     ///
     /// Needed before a list is drawn that [has decisions](DrawList::has_decisions), whenever it is another than the last; harmless else.
     ///
@@ -246,11 +245,13 @@ impl FrameSlot {
         }
         self.written = None;
         for (pass, &[draws, instances]) in self.numbers.decisions.iter().enumerate() {
-            let (records, numbers) = (list.records(pass), list.instances(pass));
+            let numbers = list.instances(pass);
+            let records = match list.has_sub_patches() {
+                true => bytemuck::cast_slice(list.sub_patches(pass)),
+                false => bytemuck::cast_slice(list.records(pass)),
+            };
             let bound = &mut self.bound;
-            bound
-                .buffer_mut(draws)
-                .write(0, bytemuck::cast_slice(records))?;
+            bound.buffer_mut(draws).write(0, records)?;
             let instances = bound.buffer_mut(instances);
             instances.write(0, bytemuck::cast_slice(numbers))?;
         }
@@ -309,7 +310,7 @@ impl FrameSlot {
         if views.len() > 1 && batch.points() > 0 {
             return Err(Error::Misuse(Misuse::ViewsInRing));
         }
-        let patches = batch.patches().end;
+        let patches = batch.drawn().end;
         if u64::from(views.end) * u64::from(patches) > 1 << 32 {
             let views = views.end;
             return Err(Error::Misuse(Misuse::ManyViews { views, patches }));

@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::shaders::{Embedded, Modules, moved};
+use crate::gpu::shaders::{Embedded, INVOCATIONS_CONSTANT, Modules, moved};
 use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
@@ -34,6 +34,8 @@ struct MadeFor {
     eyes: u32,
     /// Whether they are for dynamic rendering.
     dynamic: bool,
+    /// Whether they draw pieces.
+    sub_patches: bool,
     /// The greatest level that they draw.
     greatest_level: f32,
 }
@@ -86,6 +88,7 @@ impl Pipelines {
                 spacing: options.spacing,
                 eyes: options.target.eyes(),
                 dynamic: matches!(attachments, Attachments::Dynamic { .. }),
+                sub_patches: options.sub_patches,
                 greatest_level: match options.tangents() {
                     true => options.backend.on_device().tangent_level,
                     false => f32::INFINITY,
@@ -96,9 +99,10 @@ impl Pipelines {
             let plan = PipelinePlan {
                 options,
                 control_points: control_points(pass, options.residence),
+                invocations: layout.enabled().control_invocations(),
                 layout: pipelines.layout_or(layout),
             };
-            let modules = modules(pass, options, from);
+            let modules = modules(pass, options, plan.invocations, from);
             // SAFETY: this function's contract.
             let made = modules.and_then(|modules| unsafe { plan.build(device, cache, &modules) });
             match made {
@@ -121,7 +125,7 @@ impl Pipelines {
     /// Each pipeline takes patches of its pass's [`control_points`](crate::method::Pass::control_points) without vertex input, or what else the
     /// surface's backend draws. Its layout is `layout`, or one that is
     /// compatible with [`Layout::pipeline`] for sets 0 to 2, and has [`Layout::push_constant_range`] alone; further sets are the engine's. Its stages read
-    /// `abi::Frame` and these sets as `glsl/lib` declares them, and spacing and winding are those of `glsl/surface.tese`.
+    /// `abi::Frame` and these sets as `glsl/lib` declares them, for levels above 64 with specialization constant 2 set, and spacing and winding are those of `glsl/surface.tese`.
     pub unsafe fn from_raw(pipelines: Vec<vk::Pipeline>, layout: Option<OwnLayout>) -> Pipelines {
         Pipelines {
             pipelines,
@@ -140,7 +144,7 @@ impl Pipelines {
     /// The pipeline for a pass of a draw list.
     ///
     /// # Errors
-    /// [`Misuse::OtherPipelines`] when they were made for something else; [`Misuse::BackendLevel`] for a level that geometry shaders have no room for beside
+    /// [`Misuse::OtherPipelines`] when they were made for something else; [`Misuse::SubPatchPipelines`]; [`Misuse::BackendLevel`] for a level that geometry shaders have no room for beside
     /// tangents.
     pub(super) fn for_pass(
         &self,
@@ -152,6 +156,10 @@ impl Pipelines {
         if let Some(greatest) = greatest.filter(|&greatest| list.cut().level > greatest) {
             let backend = list.options().backend.name();
             return Err(Error::Misuse(Misuse::BackendLevel { backend, greatest }));
+        }
+        let knows_pieces = self.made_for.as_ref().is_none_or(|own| own.sub_patches);
+        if list.has_sub_patches() && !knows_pieces {
+            return Err(Error::Misuse(Misuse::SubPatchPipelines));
         }
         let fits = self.made_for.as_ref().is_none_or(|own| {
             let SurfaceOptions {
@@ -234,6 +242,8 @@ pub(super) fn control_points(pass: &Pass, residence: Residence) -> u32 {
 struct PipelinePlan<'a> {
     options: &'a PipelineOptions<'a>,
     control_points: u32,
+    /// Of control shaders that share their work among them.
+    invocations: u32,
     layout: OwnLayout,
 }
 
@@ -277,12 +287,15 @@ impl PipelinePlan<'_> {
         cache: vk::PipelineCache,
         modules: &[(vk::ShaderStageFlags, vk::ShaderModule)],
     ) -> Result<vk::Pipeline> {
-        // What the colours mean, in fragment shaders, and whether tangents are asked for, where patches are evaluated.
+        // What the colours mean, in fragment shaders; whether tangents are asked for, where patches are evaluated; whether patches may be pieces; how many invocations
+        // control shaders have that share their work.
         let constants = [
             self.options.fill.shading(),
             u32::from(self.options.tangents()),
+            u32::from(self.options.sub_patches),
+            self.invocations,
         ];
-        let entries = [0, 1].map(|number| {
+        let entries = [0, 1, 2, INVOCATIONS_CONSTANT].map(|number| {
             vk::SpecializationMapEntry::default()
                 .constant_id(number)
                 .offset(4 * number)

@@ -5,6 +5,8 @@
 
 #[cfg(feature = "shaderc")]
 mod glsl;
+mod instructions;
+mod invocations;
 #[cfg(feature = "shaderc")]
 mod live;
 mod outputs;
@@ -13,6 +15,7 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
+pub(super) use invocations::{INVOCATIONS_CONSTANT, with_invocations};
 #[cfg(feature = "shaderc")]
 pub use live::Glsl;
 pub(super) use outputs::with_outputs;

@@ -217,6 +217,8 @@ pub struct PipelineOptions<'a> {
     pub fill: Fill,
     /// The engine's own fragment shader; None for ours.
     pub fragment: Option<Fragment<'a>>,
+    /// Whether they draw lists of levels above 64 too, whose patches are [cut into pieces](crate::frame::SurfaceOptions::greatest_level).
+    pub sub_patches: bool,
     /// The engine's own layout, where it has further sets; None for [`Layout::pipeline`](super::Layout::pipeline).
     pub layout: Option<OwnLayout>,
 }

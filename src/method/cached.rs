@@ -8,8 +8,8 @@ use crate::abi;
 use crate::method::Update;
 use crate::method::{Prepared, Table};
 
-/// Levels of a cut, 0..=6: tess level 2^6 is the greatest that Vulkan promises.
-const LEVELS: usize = 7;
+/// Levels of a cut, 0..=10.
+const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
 
 /// The points of a cache, those of lower plan levels first, and what it takes to compute and find them.
 #[derive(Clone, Debug, Default, PartialEq)]

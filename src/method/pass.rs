@@ -108,7 +108,7 @@ impl Pass {
     }
 
     /// What fragment shaders get that ask for tangents: dP/du and dP/dv in local units, by the (u, v) of the ptex face, at `uv` of the domain of patch `patch`, which is
-    /// drawn at tess level `level` (1..=64; of it only corners of irregular `quadtree` patches take notice, see the manual, *Shaders*). Without displacement. Zero where there is no
+    /// drawn at tess level `level` (1..=1024; of it only corners of irregular `quadtree` patches take notice, see the manual, *Shaders*). Without displacement. Zero where there is no
     /// surface, as for [`evaluate`](Self::evaluate); None where patches have no tangents.
     pub fn tangents(
         &self,
@@ -122,7 +122,7 @@ impl Pass {
             return Some([Vec3::ZERO; 2]);
         }
         let uv = self.domain.nearest(uv.to_array()).into();
-        let plan_level = (level.clamp(1.0, 64.0).ceil() as u32)
+        let plan_level = (level.clamp(1.0, 1024.0).ceil() as u32)
             .next_power_of_two()
             .ilog2();
         let own = tangents(self, controls, patch, uv, plan_level);

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::abi;
+pub(super) use crate::tessellation::Piece;
 
 /// Where (u, v) of a patch's own domain lies in its ptex face: the patch may be one of its children, and its domain may be turned.
 pub fn to_ptex(patch: &abi::Patch, uv: [f32; 2]) -> [f32; 2] {
@@ -50,80 +51,13 @@ pub(super) enum Child {
     Piece(Piece),
 }
 
-/// A piece of a quad that is halved `depth` times: so many pieces to the right and up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Piece {
-    /// 0..=15.
-    pub depth: u32,
-    /// Of 2^depth, 12 bits.
-    pub column: u32,
-    /// Of 2^depth, 12 bits.
-    pub row: u32,
-}
-
-/// The bits of a column or row.
-const PLACE_BITS: u32 = 12;
-
-impl Piece {
-    /// That of a patch.
-    pub fn of(patch: &abi::Patch) -> Piece {
-        Piece {
-            depth: patch.plan >> abi::PIECE_DEPTH_SHIFT,
-            column: patch.plan & ((1 << PLACE_BITS) - 1),
-            row: patch.plan >> PLACE_BITS & ((1 << PLACE_BITS) - 1),
-        }
-    }
-
-    /// As a patch's plan has it.
-    pub fn plan(self) -> u32 {
-        self.depth << abi::PIECE_DEPTH_SHIFT | self.row << PLACE_BITS | self.column
-    }
-
-    /// Its quarter at a corner.
-    pub fn child(self, corner: u32) -> Piece {
-        let [right, up] = [[0, 0], [1, 0], [1, 1], [0, 1]][corner as usize];
-        Piece {
-            depth: self.depth + 1,
-            column: 2 * self.column + right,
-            row: 2 * self.row + up,
-        }
-    }
-
-    /// Which of its edges lie on those of the ptex face.
-    pub fn borders(self) -> [bool; 4] {
-        let last = (1 << self.depth) - 1;
-        [
-            self.row == 0,
-            self.column == last,
-            self.row == last,
-            self.column == 0,
-        ]
-    }
-
-    /// Where its corners are in the ptex face.
-    pub fn corners(self) -> [[f32; 2]; 4] {
-        let [x, y] = self.place();
-        let at = |right: f32, up: f32| [self.size() * (x + right), self.size() * (y + up)];
-        [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)]
-    }
-
-    fn place(self) -> [f32; 2] {
-        [self.column as f32, self.row as f32]
-    }
-
-    /// Of its edges, in those of the face.
-    fn size(self) -> f32 {
-        1.0 / (1u32 << self.depth) as f32
-    }
-}
-
 pub(super) fn child(patch: &abi::Patch) -> Child {
     match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
         0 => Child::Whole,
         number if number < abi::CHILD_OF_TRIANGLE => {
             Child::Corner((number - abi::CHILD_OF_QUAD) as usize)
         }
-        abi::CHILD_PIECE => Child::Piece(Piece::of(patch)),
+        abi::CHILD_PIECE => Child::Piece(Piece::of_plan(patch.plan)),
         number => match number - abi::CHILD_OF_TRIANGLE {
             corner @ 0..3 => Child::Corner(corner as usize),
             _ => Child::Middle,
@@ -229,7 +163,7 @@ mod tests {
                 plan: piece.plan(),
                 ..Default::default()
             };
-            assert_eq!(Piece::of(&patch), piece);
+            assert_eq!(Piece::of_plan(patch.plan), piece);
             for uv in [[0.0, 0.0], [0.25, 0.5], [1.0, 0.0], [0.0, 1.0]] {
                 assert_eq!(from_ptex(&patch, to_ptex(&patch, uv)), uv);
             }

@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
+use crate::abi;
 use crate::error::Result;
 use crate::method::Outline;
 
@@ -9,25 +10,30 @@ use crate::method::Outline;
 /// of an edge have the same level there, and levels change smoothly as the tags do.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DepthTags {
-    /// By control vertex, 0..=6.
+    /// By control vertex, 0..=10; a list's levels are at most its cut's.
     pub depths: Vec<f32>,
+    /// By ptex face, 0..=10, where the insides of patches are to be deeper than their edges ask for; those that lack have none. Edges keep their levels, and
+    /// neighbours theirs. For the tessellator; other back-ends cut by edges alone.
+    pub insides: Vec<f32>,
 }
 
-/// The deepest: level 64.
-const DEEPEST: f32 = 6.0;
-
 impl DepthTags {
+    /// The deepest: level 1024.
+    pub const DEEPEST: f32 = abi::HIGHEST_LEVEL as f32;
+
     /// By what is wanted of each vertex; what is no number, or beyond what tessellators do, is clamped.
     pub fn new(depths: impl IntoIterator<Item = f32>) -> DepthTags {
-        let clamped = |depth: f32| {
-            if depth.is_nan() {
-                0.0
-            } else {
-                depth.clamp(0.0, DEEPEST)
-            }
-        };
         DepthTags {
             depths: depths.into_iter().map(clamped).collect(),
+            insides: Vec::new(),
+        }
+    }
+
+    /// The same with depths of the insides of ptex faces.
+    pub fn with_insides(self, insides: impl IntoIterator<Item = f32>) -> DepthTags {
+        DepthTags {
+            insides: insides.into_iter().map(clamped).collect(),
+            ..self
         }
     }
 
@@ -89,5 +95,12 @@ impl DepthTags {
             }
         }
         DepthTags::new(depths)
+    }
+}
+
+fn clamped(depth: f32) -> f32 {
+    match depth.is_nan() {
+        true => 0.0,
+        false => depth.clamp(0.0, DepthTags::DEEPEST),
     }
 }

@@ -12,7 +12,7 @@ pub struct PlanOptions {
 }
 
 impl Default for PlanOptions {
-    /// Level 6 for Vulkan's greatest tess level of 64, creases evaluated directly.
+    /// Level 6 for tess levels up to 64, all that tessellators do at once, creases evaluated directly.
     fn default() -> PlanOptions {
         PlanOptions {
             max_level: 6,
@@ -25,6 +25,13 @@ impl PlanOptions {
     /// The highest `max_level`.
     pub const HIGHEST_LEVEL: u32 = 10;
 
+    /// The `max_level` that a tess level needs: its binary logarithm, 1 at least.
+    pub fn level_for(tess_level: f32) -> u32 {
+        let greatest = (1u32 << PlanOptions::HIGHEST_LEVEL) as f32;
+        let whole = tess_level.clamp(2.0, greatest).ceil() as u32;
+        whole.next_power_of_two().ilog2()
+    }
+
     /// Checks the range of `max_level`.
     ///
     /// # Errors
@@ -36,7 +43,7 @@ impl PlanOptions {
         Err(Error::Option {
             option: "--max-level",
             problem: format!("{} is out of range", self.max_level),
-            remedy: "give a level of 1 to 10; 6 serves every tess level of Vulkan".into(),
+            remedy: "give a level of 1 to 10; 6 serves every tess level up to 64".into(),
         })
     }
 }

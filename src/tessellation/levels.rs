@@ -1,6 +1,7 @@
 //! Tess levels of a patch, a function of its edges alone on each edge. Twin of `glsl/lib/levels.glsl`.
 
 use crate::abi;
+use crate::tessellation::{Piece, TESSELLATED};
 
 /// Vulkan's spacing modes that keep vertices away from corners. Fractional-odd does not (see Brainerd et al. 2016, section 9.7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -13,7 +14,7 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    /// The number of segments that the tessellator makes of an edge of this level (Vulkan spec, "Tessellator Spacing"), at most 64.
+    /// The number of segments of an edge of this level, as tessellators make them (Vulkan spec, "Tessellator Spacing").
     pub fn segments(self, level: f32) -> u32 {
         let level = self.clamp(level, abi::HIGHEST_LEVEL);
         match self {
@@ -22,13 +23,20 @@ impl Spacing {
         }
     }
 
-    /// The level within what the tessellator and plans of `max_level` levels can do: from [`least`](Self::least) to 2^`max_level` and at
-    /// most 64. What is no number becomes the least.
+    /// The level within what can be drawn, and plans of `max_level` levels serve: from [`least`](Self::least) to 2^`max_level` and at
+    /// most [`greatest`](Self::greatest). What is no number becomes the least.
     pub fn clamp(self, level: f32, max_level: u32) -> f32 {
-        // 2^6 is all that the tessellator does.
-        let greatest = (1u32 << max_level.min(6)) as f32;
+        let greatest = ((1u32 << max_level.min(abi::HIGHEST_LEVEL)) as f32).min(self.greatest());
         // Not f32::clamp, which lets NaN pass.
         level.max(self.least()).min(greatest.max(self.least()))
+    }
+
+    /// The greatest level: 1024 with equal spacing, for which patches are cut into pieces before they are drawn; else 64, all that every tessellator does.
+    pub fn greatest(self) -> f32 {
+        match self {
+            Spacing::Equal => (1u32 << abi::HIGHEST_LEVEL) as f32,
+            Spacing::FractionalEven => TESSELLATED,
+        }
     }
 
     /// The least level: the tessellator raises lower ones to it.
@@ -98,7 +106,7 @@ pub struct Levels {
     pub inside: f32,
 }
 
-/// The levels of a patch when quads have `level`, from the spacing's least to 2^`max_level` and at most 64.
+/// The levels of a patch when quads have `level`, from the spacing's least to 2^`max_level` and at most its greatest; of triangles 64.
 pub fn levels(
     domain: Domain,
     patch: &abi::Patch,
@@ -110,7 +118,7 @@ pub fn levels(
 }
 
 /// The levels of a patch whose edges from corner i to corner i + 1 belong to edges of quads of the levels `edges`, from the spacing's least to
-/// 2^`max_level` and at most 64; of a triangle the last counts twice.
+/// 2^`max_level` and at most its greatest, of triangles 64; of a triangle the last counts twice.
 ///
 /// Where a quad meets an n-gon, its edge gets twice the segments of the n-gon's half edge: 2k and k with equal spacing, 4k and 2k with
 /// fractional-even (Brainerd et al. 2016, section 7.2). A piece has what its face's edges have after as many halvings, and before two smaller pieces
@@ -122,15 +130,34 @@ pub fn levels_of_edges(
     spacing: Spacing,
     max_level: u32,
 ) -> Levels {
+    levels_of_edges_and_inside(domain, patch, edges, 0.0, spacing, max_level)
+}
+
+/// The same of a patch whose inside has a level of its face at least: neighbours need know nothing of it.
+pub(crate) fn levels_of_edges_and_inside(
+    domain: Domain,
+    patch: &abi::Patch,
+    edges: [f32; 4],
+    inside: f32,
+    spacing: Spacing,
+    max_level: u32,
+) -> Levels {
+    // Triangles are never cut into pieces.
+    let max_level = match domain {
+        Domain::Triangles => max_level.min(abi::TESSELLATED_LEVEL),
+        Domain::Quads => max_level,
+    };
     let edges = edges.map(|level| spacing.clamp(level, max_level));
+    let inside = spacing.clamp(inside, max_level);
     let half = |level: f32| match spacing {
         Spacing::Equal => (level * 0.5).ceil(),
         Spacing::FractionalEven => 2.0 * (level * 0.25).ceil(),
     };
     // Once for a part of an n-gon, and as often as the face of a piece is halved.
     let halvings = halvings(patch);
-    let edges = edges.map(|level| (0..halvings).fold(level, |level, _| half(level)));
-    let inside = edges.into_iter().fold(0.0, f32::max);
+    let halved = |level: f32| (0..halvings).fold(level, |level, _| half(level));
+    let edges = edges.map(halved);
+    let inside = edges.into_iter().fold(halved(inside), f32::max);
     let even = |edge: usize| patch.flags & abi::PATCH_EVEN_EDGE << edge != 0;
     let level = |edge: usize| match edges[edge] {
         level if even(edge) => 2.0 * half(level),
@@ -141,13 +168,14 @@ pub fn levels_of_edges(
         edges: [0, 1, 2, 3].map(level),
         inside,
     }
+    .in_whole_pieces()
 }
 
 /// How often the edges of the control mesh are halved to make those of a patch. Twin of `patch_halvings` in `glsl/lib/half_level.glsl`.
 fn halvings(patch: &abi::Patch) -> u32 {
     let is_piece = patch.flags >> abi::PATCH_CHILD_SHIFT & 15 == abi::CHILD_PIECE;
     let depth = if is_piece {
-        patch.plan >> abi::PIECE_DEPTH_SHIFT
+        Piece::of_plan(patch.plan).depth
     } else {
         0
     };
@@ -160,8 +188,23 @@ impl Levels {
         self.edges.iter().copied().fold(self.inside, f32::max)
     }
 
-    /// The vertices that the tessellator makes of a patch (Vulkan spec, "Quad Tessellation", "Triangle Tessellation").
+    /// The vertices that the tessellator makes of a patch (Vulkan spec, "Quad Tessellation", "Triangle Tessellation"); of pieces together.
     pub fn vertices(&self, spacing: Spacing) -> u32 {
+        self.of_pieces().at_once(spacing) << (2 * self.piece_depth())
+    }
+
+    /// How many of them are different: pieces share those between them, and several may go to one of an edge's.
+    pub fn different_vertices(&self, spacing: Spacing) -> u32 {
+        match self.piece_depth() {
+            0 => self.at_once(spacing),
+            _ => {
+                let inside = spacing.segments(self.inside) - 1;
+                self.outer(spacing) + inside * inside
+            }
+        }
+    }
+
+    fn at_once(&self, spacing: Spacing) -> u32 {
         let inside = self.inside_segments(spacing);
         match self.domain {
             _ if inside == 1 => self.domain.corners() as u32,
@@ -172,8 +215,15 @@ impl Levels {
         }
     }
 
-    /// The triangles that the tessellator makes of a patch.
+    /// The triangles that the tessellator makes of a patch; of pieces together, those without area included.
     pub fn triangles(&self, spacing: Spacing) -> u32 {
+        match self.piece_depth() {
+            0 => self.triangles_at_once(spacing),
+            depth => self.of_pieces().triangles_at_once(spacing) << (2 * depth),
+        }
+    }
+
+    fn triangles_at_once(&self, spacing: Spacing) -> u32 {
         let inside = self.inside_segments(spacing);
         match self.domain {
             Domain::Quads if inside == 1 => 2,
@@ -238,7 +288,7 @@ mod tests {
             for max_level in [0, 6, 31, 32, 40, u32::MAX] {
                 for level in odd {
                     let clamped = spacing.clamp(level, max_level);
-                    assert!((spacing.least()..=64.0).contains(&clamped));
+                    assert!((spacing.least()..=spacing.greatest()).contains(&clamped));
                     for domain in [Domain::Quads, Domain::Triangles] {
                         let made = levels(domain, &patch(0), level, spacing, max_level);
                         assert!(made.vertices(spacing) > 0 && made.triangles(spacing) > 0);

@@ -43,7 +43,7 @@ fn options_that_draw_nothing_make_no_surface() {
         ..SurfaceOptions::default()
     };
     assert_eq!(refused(rounds), Some(Misuse::NoRounds));
-    for greatest_level in [f32::NAN, f32::INFINITY, 0.0, -1.0, 64.5] {
+    for greatest_level in [f32::NAN, f32::INFINITY, 0.0, -1.0, 1024.5] {
         let levels = SurfaceOptions {
             greatest_level,
             ..SurfaceOptions::default()
@@ -141,11 +141,14 @@ fn lists_have_an_entry_a_control_vertex() {
     let few = misuse(loaded.surface_mut().write_positions(&[[0.0; 3]; 7]));
     assert_eq!(few, Some(count("positions", 7)));
     let tagged = |depths: Vec<f32>| {
-        let tags = DepthTags { depths };
+        let tags = DepthTags {
+            depths,
+            ..DepthTags::default()
+        };
         misuse(loaded.surface().draw_list(cut(4.0, SPACING), Some(&tags)))
     };
     assert_eq!(tagged(vec![1.0; 9]), Some(count("depth tags", 9)));
-    for depth in [f32::NAN, f32::INFINITY, -1.0, 6.5] {
+    for depth in [f32::NAN, f32::INFINITY, -1.0, 10.5] {
         let mut depths = vec![1.0; 8];
         depths[5] = depth;
         let none = tagged(depths);

@@ -134,6 +134,7 @@ fn an_engine_brings_its_own_fragment_shader_and_sets() {
             constants: Some(&constants),
             tangents: false,
         }),
+        sub_patches: false,
         layout: Some(OwnLayout {
             raw: own.behind,
             first_set: 0,
@@ -178,6 +179,7 @@ fn our_sets_move_behind_the_engines() {
         let scene = Scene::new(&gpu, backend);
         let right = scene.classic(Shading::Patch);
         let options = PipelineOptions {
+            sub_patches: false,
             layout: Some(OwnLayout {
                 raw: own.around,
                 first_set: 1,

@@ -2,8 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use ash::vk;
 use hullform::abi::Captured;
-use hullform::gpu::{Batch, Cut, Fill, Remedy, Slots, SurfaceOptions, Workaround, workaround};
+use hullform::gpu::{
+    Batch, Cut, Fill, Layout, Pipelines, Remedy, Slots, SurfaceOptions, Workaround, workaround,
+};
+use hullform::host::{self, Shot, Style, vertex_bits};
 use hullform::mesh::Model;
 use hullform::method::Prepared;
 use hullform::tessellation::Spacing;
@@ -97,6 +101,54 @@ fn bits_do_not_depend_on_batches() {
             let mut loaded = load(&gpu, &model, &[&ONE_A_TIME], cut, |_, _| ());
             let frame = loaded.capture(cut, Fill::Discard).expect("it is drawn");
             assert_same_bits("a patch an instance", &frame, &reference);
+        }
+    }
+    gpu.finish();
+}
+
+#[test]
+fn bits_do_not_depend_on_how_many_invocations_fill_the_ring() {
+    let Some(gpu) = Gpu::open() else { return };
+    let known = gpu.device.info().workarounds.clone();
+    let device = gpu.device.raw();
+    let cut = cut(7.0, Spacing::Equal);
+    for name in ["hull", "ngons", "pole-64"] {
+        let model = shapes::built_in(name);
+        let mut loaded = load(&gpu, &model, &known, cut, |_, options| {
+            options.slots = Slots::Host;
+        });
+        let list = loaded.draw_list(cut).expect("it fits");
+        let style = Style::new(loaded.surface().options(), cut.spacing, Fill::Discard);
+        // Fewer than eight, and more than the vertices of a ring, are none.
+        let drawn = [4, 8, 16, 32, 64].map(|abreast| {
+            let enabled = gpu.device.enabled().with_subgroup_size(abreast);
+            let (cache, options) = (vk::PipelineCache::null(), style.options(gpu.target()));
+            // SAFETY: all of one live device, which has executed the commands when they are destroyed.
+            unsafe {
+                let layout = Layout::new(device, enabled).expect("a layout");
+                let made = Pipelines::new(device, &layout, cache, loaded.prepared(), &options);
+                let pipelines = made.expect("pipelines");
+                let shot = Shot {
+                    pipelines: &pipelines,
+                    view: loaded.view,
+                    instances: 1,
+                    batches: list.batches().collect(),
+                };
+                host::Loaded::draw(&loaded, &[shot]).expect("it is executed");
+                pipelines.destroy(device);
+                layout.destroy(device);
+            }
+            let counters = loaded.surface().counters().expect("counters");
+            assert_eq!(counters.overflows, 0, "{name}");
+            let captured = loaded.surface().captured().expect("vertices");
+            let mut captured: Vec<_> = captured.iter().map(vertex_bits).collect();
+            captured.sort();
+            captured.dedup();
+            captured
+        });
+        assert!(drawn[0].len() > 100, "{name}");
+        for other in &drawn[1..] {
+            assert!(*other == drawn[0], "{name}");
         }
     }
     gpu.finish();

@@ -74,6 +74,7 @@ impl<'a> Teller<'a> {
                 constants: Some(&constants),
                 tangents: true,
             }),
+            sub_patches: false,
             layout: None,
         };
         let (device, prepared) = (self.gpu.device.raw(), loaded.prepared());

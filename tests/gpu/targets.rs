@@ -99,6 +99,7 @@ impl<'a> Scene<'a> {
             spacing: self.list.cut().spacing,
             fill,
             fragment: None,
+            sub_patches: false,
             layout: None,
         }
     }
@@ -372,6 +373,7 @@ fn dynamic_rendering_takes_no_barriers_and_needs_its_feature() {
         spacing: Spacing::Equal,
         fill: Fill::Solid(Shading::Lit),
         fragment: None,
+        sub_patches: false,
         layout: None,
     };
     let (device, cache) = (gpu.device.raw(), vk::PipelineCache::null());

@@ -100,6 +100,7 @@ pub fn captured(
         By::Device(decision, seen) => (drawing.decision, view) = (decision, seen),
     }
     let list = drawing.draw_list(cut)?;
+    list.check_points(drawing.prepared())?;
     let style = Style::new(options, cut.spacing, Fill::Discard);
     let pipelines = bench.pipelines(drawing.prepared(), style)?;
     let mut surface = Surface::default();
@@ -128,7 +129,8 @@ fn once_each(drawing: &Drawing<'_>, batch: Batch<'_>) -> Result<Vec<abi::Capture
         Decides::Device => patches.sum(),
     };
     let (vertices, _) = drawing.captured(expected)?;
-    if vertices.len() != expected as usize {
+    // Pieces share vertices.
+    if !batch.list().has_sub_patches() && vertices.len() != expected as usize {
         tracing::warn!(
             "the device made {} vertices where {expected} were expected",
             vertices.len()
@@ -173,7 +175,7 @@ fn add_patches(
         let uv: Vec<[f32; 2]> = vertices.iter().map(|vertex| vertex.uv).collect();
         let list = batch.list();
         let triangles = match decided(drawing, batch.pass(), number) {
-            None => list.triangles(prepared, batch.pass(), number, &uv),
+            None => batch.triangles(prepared, number, &uv),
             Some(levels) => list.join(&levels, &uv),
         };
         let triangles = triangles.ok_or_else(|| Error::Lost {

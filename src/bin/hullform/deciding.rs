@@ -17,17 +17,19 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Who decides: the device, where there is something to decide and it can. Without it levels go by depth tags, and patches are drawn as they are.
+    /// Who decides for levels up to `level`: the device, where there is something to decide and it can. Without it levels go by depth tags, and patches are
+    /// drawn as they are.
     ///
     /// # Errors
     /// [`Error::Option`] for patches that are to be left out, which nobody does then.
-    pub fn decides(self, backend: Backend, slots: Slots) -> Result<Decides> {
-        let able = backend == Backend::Tessellator && slots == Slots::Counter;
+    pub fn decides(self, backend: Backend, slots: Slots, level: f32) -> Result<Decides> {
+        let whole = level <= backend.greatest_level();
+        let able = backend == Backend::Tessellator && slots == Slots::Counter && whole;
         if !able && self.culling.needs_decisions() {
             return Err(Error::Option {
                 option: "--cull",
-                problem: "patches are left out by the device, which decides for the tessellator alone and with slots by counters".into(),
-                remedy: "leave out --backend and --slots, or frustum and small".into(),
+                problem: "patches are left out by the device, which decides for the tessellator alone, with slots by counters, and up to level 64".into(),
+                remedy: "leave out --backend, --slots and levels above 64, or frustum and small".into(),
             });
         }
         Ok(match able && self.is_anything() {
@@ -83,7 +85,7 @@ mod tests {
             adaptive: None,
             culling,
         };
-        let decides = |wanted: Wanted, backend, slots| wanted.decides(backend, slots).ok();
+        let decides = |wanted: Wanted, backend, slots| wanted.decides(backend, slots, 8.0).ok();
         let (all, some) = (Backend::Tessellator, Backend::Pattern);
         let nothing = Wanted::default();
         assert_eq!(decides(nothing, all, Slots::Counter), Some(Decides::Host));
@@ -96,5 +98,7 @@ mod tests {
         };
         assert_eq!(decides(tagged, some, Slots::Counter), Some(Decides::Host));
         assert_eq!(decides(tagged, all, Slots::Counter), Some(Decides::Device));
+        let above = |wanted: Wanted| wanted.decides(all, Slots::Counter, 65.0).ok();
+        assert_eq!((above(tagged), above(wanted)), (Some(Decides::Host), None));
     }
 }

@@ -317,8 +317,8 @@ fn device(text: &str) -> Result<String, &'static str> {
 /// A tess level.
 pub fn level(text: &str) -> Result<f32, &'static str> {
     match text.parse() {
-        Ok(level) if (1.0..=64.0).contains(&level) => Ok(level),
-        _ => Err("expected a number from 1 to 64"),
+        Ok(level) if (1.0..=1024.0).contains(&level) => Ok(level),
+        _ => Err("expected a number from 1 to 1024"),
     }
 }
 
@@ -371,7 +371,7 @@ mod tests {
     fn levels() {
         assert_eq!(level("1"), Ok(1.0));
         assert_eq!(level("6.5"), Ok(6.5));
-        for wrong in ["0.99", "64.01", "NaN", "inf", "x", ""] {
+        for wrong in ["0.99", "1024.01", "NaN", "inf", "x", ""] {
             assert!(level(wrong).is_err(), "{wrong}");
         }
     }

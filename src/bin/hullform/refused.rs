@@ -23,6 +23,11 @@ pub fn in_words_of_options(error: Error) -> Error {
             "--level",
             "choose a lower level, or the backend pattern or tessellator",
         ),
+        Misuse::SubPatchSpacing => ("--spacing", "choose equal, or a level of 64 at most"),
+        Misuse::SubPatchesOfTriangles => (
+            "--level",
+            "choose a level of 64 at most, or a method of quads",
+        ),
         Misuse::BufferTooLarge { ref what, .. } if what == RING => {
             ("--ring-bytes", "give a smaller ring")
         }

@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::error::Result;
 use crate::frame::Residence;
-use crate::gpu::shaders::{Modules, with_outputs};
+use crate::gpu::shaders::{Modules, with_invocations, with_outputs};
 use crate::gpu::target::{Fill, PipelineOptions};
 use crate::method::Pass;
 
@@ -56,10 +56,12 @@ pub(super) fn names(
 /// A stage and the words of its module.
 pub(super) type Module<'m> = (vk::ShaderStageFlags, Cow<'m, [u32]>);
 
-/// The modules that a pass's pipeline has. The one that evaluates hands on what is read of it, and nothing else.
+/// The modules that a pass's pipeline has. The one that evaluates hands on what is read of it, and nothing else; one that shares its work among invocations has so
+/// many.
 pub(super) fn modules<'m>(
     pass: &Pass,
     options: &PipelineOptions<'_>,
+    invocations: u32,
     from: &'m dyn Modules,
 ) -> Result<Vec<Module<'m>>> {
     let evaluates = options.backend.on_device().stages.last();
@@ -69,6 +71,11 @@ pub(super) fn modules<'m>(
             && let Cow::Owned(fewer) = with_outputs(&words, |output| options.reads(output))
         {
             words = Cow::Owned(fewer);
+        }
+        if stage == vk::ShaderStageFlags::TESSELLATION_CONTROL
+            && let Cow::Owned(told) = with_invocations(&words, invocations)
+        {
+            words = Cow::Owned(told);
         }
         Ok((stage, words))
     });

@@ -7,16 +7,15 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// The words before the first instruction: magic number, version, generator, bound, schema (SPIR-V, "Physical Layout").
-const HEADER: usize = 5;
-/// Which of these is the bound of all numbers.
+use super::instructions::{DECORATE, HEADER, instructions};
+
+/// Which word of the header is the bound of all numbers.
 const BOUND: usize = 3;
 
 const TYPE_POINTER: u32 = 32;
 const VARIABLE: u32 = 59;
 const ACCESS_CHAIN: u32 = 65;
 const IN_BOUNDS_ACCESS_CHAIN: u32 = 66;
-const DECORATE: u32 = 71;
 
 const LOCATION: u32 = 30;
 
@@ -69,17 +68,6 @@ pub(in crate::gpu) fn with_outputs(words: &[u32], is_read: impl Fn(u32) -> bool)
         }
     }
     Cow::Owned(kept)
-}
-
-/// The instructions of a module, each with its first word, which has length and opcode.
-fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
-    let mut rest = words.get(HEADER..).unwrap_or_default();
-    std::iter::from_fn(move || {
-        let length = (rest.first()? >> 16).max(1) as usize;
-        let (instruction, others) = rest.split_at(length.min(rest.len()));
-        rest = others;
-        Some(instruction)
-    })
 }
 
 #[cfg(test)]

@@ -54,6 +54,8 @@ pub struct Style {
     pub compare: vk::CompareOp,
     /// How wide lines are, in pixels; at most 1 where the device has no wider ones.
     pub line_width: f32,
+    /// Whether patches may be pieces of ones with more than 64 segments.
+    pub sub_patches: bool,
 }
 
 impl Style {
@@ -67,6 +69,7 @@ impl Style {
             cull: vk::CullModeFlags::NONE,
             compare: vk::CompareOp::LESS_OR_EQUAL,
             line_width: 1.0,
+            sub_patches: options.has_sub_patches(),
         }
     }
 
@@ -85,6 +88,7 @@ impl Style {
             spacing: self.spacing,
             fill: self.fill,
             fragment: None,
+            sub_patches: self.sub_patches,
             layout: None,
         }
     }

@@ -48,7 +48,7 @@ pub struct Arguments {
     /// Methods [default: all that can draw a model]; `flat`, which ratios are to, is always measured
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
     methods: Vec<String>,
-    /// Tessellation levels, 1 to 64
+    /// Tessellation levels, 1 to 64; up to 1024 as for `render`
     #[arg(long, value_name = "L,M,...", value_delimiter = ',', default_value = "1,2,4,8,16,32", value_parser = options::level)]
     levels: Vec<f32>,
     /// Spacing of the vertices along an edge
@@ -124,7 +124,8 @@ impl Arguments {
     fn check(&self, global: &Global) -> Result<()> {
         let slots = drawing::slots(global.slots);
         let wanted = self.wanted();
-        let decides = |backend| wanted.decides(backend, slots);
+        let greatest = self.levels.iter().copied().fold(1.0, f32::max);
+        let decides = |backend| wanted.decides(backend, slots, greatest);
         let all: Result<Vec<Decides>> = self.backend.iter().map(|&b| decides(b.into())).collect();
         if wanted.is_anything() && all?.contains(&Decides::Host) {
             return Err(Error::Option {
@@ -133,9 +134,9 @@ impl Arguments {
                 } else {
                     "--cull"
                 },
-                problem: "the device decides for the tessellator alone, and with slots by counters"
+                problem: "the device decides for the tessellator alone, with slots by counters, and up to level 64"
                     .into(),
-                remedy: "leave out --backend and --slots, or decisions".into(),
+                remedy: "leave out --backend, --slots and levels above 64, or decisions".into(),
             });
         }
         Ok(())

@@ -91,7 +91,7 @@ impl<'a> Subject<'a> {
         let device_counts = gpu.device.info().support.optional.pipeline_statistics_query
             && backend == Backend::Tessellator;
         let slots = drawing::slots(global.slots);
-        let decides = arguments.wanted().decides(backend, slots)?;
+        let decides = arguments.wanted().decides(backend, slots, greatest)?;
         let options = SurfaceOptions {
             backend,
             residence,

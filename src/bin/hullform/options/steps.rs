@@ -7,7 +7,7 @@ use super::{Cutting, Spacing, level};
 /// How finely: options of whatever tessellates.
 #[derive(Args)]
 pub struct Steps {
-    /// Tessellation level, 1 to 64
+    /// Tessellation level, 1 to 64; up to 1024 with the tessellator, equal spacing and methods of quads: patches are cut into pieces first
     #[arg(long, default_value = "8", value_parser = level)]
     pub level: f32,
     /// Spacing of the vertices along an edge

@@ -6,6 +6,7 @@ use hullform::method::{
     EndCaps, IsolationOptions, METHODS, Method, MethodOptions, Reproduces, TableNormals,
     TableOptions,
 };
+use hullform::plan::PlanOptions;
 
 /// How tables of basis functions are made, and features isolated: options of whatever prepares a model for drawing.
 #[derive(Args)]
@@ -92,10 +93,15 @@ impl Tables {
             level: self.isolation.unwrap_or_else(needed),
             caps: self.caps.map_or(EndCaps::default(), EndCaps::from),
         };
+        let usual = PlanOptions::default();
+        let plans = PlanOptions {
+            max_level: usual.max_level.max(PlanOptions::level_for(level)),
+            ..usual
+        };
         Ok(MethodOptions {
             tables: self.tables(),
             isolation,
-            ..MethodOptions::default()
+            plans,
         })
     }
 

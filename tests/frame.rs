@@ -202,6 +202,54 @@ fn slots_of_the_host_do_not_overlap() {
     }
 }
 
+/// Whatever draws it: by ring and cache, tagged or not, by the tessellator or by patterns.
+#[test]
+fn of_what_is_chosen_a_list_draws_all_and_of_the_others_nothing() {
+    let chosen = |pass: usize, patch: u32| (pass as u32 + patch).is_multiple_of(3);
+    let positions = Model::new(builtin("ngons").expect("it is built in")).positions();
+    for prepared in prepared("ngons") {
+        let controls = prepared.controls(positions.clone());
+        let tags = tags(&prepared);
+        let backends = [Backend::Tessellator, Backend::Pattern];
+        for (backend, tags) in backends.iter().flat_map(|b| [(b, None), (b, Some(&tags))]) {
+            let options = SurfaceOptions {
+                backend: *backend,
+                residence: match backend {
+                    Backend::Pattern => Residence::Cache,
+                    _ => Residence::Ring,
+                },
+                ..SurfaceOptions::default()
+            };
+            let cut = Cut {
+                level: 4.0,
+                spacing: Spacing::Equal,
+            };
+            let Ok(whole) = DrawList::new(&prepared, &options, None, cut, tags) else {
+                continue;
+            };
+            let few = whole.clone().only(&prepared, chosen).expect("its own");
+            assert!(few.number() != whole.number() && few.has_decisions());
+            let drawn = |list: &DrawList| {
+                let tessellated = list.tessellate(&prepared, &controls).expect("its own");
+                let mut points = tessellated.points;
+                points.retain(|point| chosen(point.pass as usize, point.patch));
+                points
+            };
+            let points = few
+                .tessellate(&prepared, &controls)
+                .expect("its own")
+                .points;
+            assert!(!points.is_empty() && points == drawn(&whole));
+            for batch in few.batches() {
+                for patch in batch.patches() {
+                    let record = few.records(batch.pass())[patch as usize];
+                    assert_eq!(record.inside > 0.0, chosen(batch.pass(), patch));
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn every_patch_is_an_instance_of_a_pattern() {
     let prepared = prepared("ngons").pop();

@@ -143,7 +143,7 @@ pub(super) fn is_back(points: &[Vec3; 16], seen: &Seen, levels: &Levels, spacing
 }
 
 /// The Bezier points of a bicubic B-spline patch (Farin 2002, section 8.1): a smaller hull of the same surface.
-fn bezier(points: &[Vec3; 16]) -> [Vec3; 16] {
+pub(super) fn bezier(points: &[Vec3; 16]) -> [Vec3; 16] {
     let mut points = *points;
     for (step, other) in [(1, 4), (4, 1)] {
         for first in (0..4).map(|i| i * other) {

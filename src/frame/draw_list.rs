@@ -17,7 +17,7 @@ use crate::tessellation::{Levels, Piece, levels_of_edges_and_inside};
 /// It belongs to what was prepared and to the options that it was made with: a surface of other ones refuses it.
 #[derive(Clone, Debug)]
 pub struct DrawList {
-    number: u64,
+    pub(super) number: u64,
     /// The number and version of what was prepared.
     prepared: [u64; 2],
     options: SurfaceOptions,
@@ -28,11 +28,11 @@ pub struct DrawList {
     ring_batches: u32,
     /// By run.
     draws: Vec<Vec<Draw>>,
-    /// By pass and patch, where depth tags are given.
-    tagged: Option<Vec<Vec<Levels>>>,
+    /// By pass and patch, where depth tags are given, or some are chosen; level 0 where nothing is drawn.
+    pub(super) tagged: Option<Vec<Vec<Levels>>>,
     records: Vec<Vec<abi::PatchDraw>>,
     /// By pass, where patches may be cut before they are drawn.
-    sub_patches: Option<Vec<Vec<abi::SubPatch>>>,
+    pub(super) sub_patches: Option<Vec<Vec<abi::SubPatch>>>,
     instances: Vec<Vec<u32>>,
     patterns: Vec<Levels>,
 }
@@ -50,7 +50,6 @@ impl DrawList {
         cut: Cut,
         tags: Option<&DepthTags>,
     ) -> Result<DrawList> {
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
         options.check(prepared)?;
         let cut = options.cut(cut)?;
         let bounds = options.bounds(instance_vertices);
@@ -73,7 +72,7 @@ impl DrawList {
         let runs = batches(each, bounds)?;
         let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
         let mut list = DrawList {
-            number: NUMBER.fetch_add(1, Ordering::Relaxed),
+            number: new_number(),
             prepared: [prepared.number(), prepared.version()],
             options: *options,
             instance_vertices,
@@ -115,7 +114,8 @@ impl DrawList {
     }
 
     /// Fills in draws, and what the host decides about each patch where it does.
-    fn decide(&mut self, prepared: &Prepared) {
+    pub(super) fn decide(&mut self, prepared: &Prepared) {
+        (self.draws, self.records, self.instances) = Default::default();
         let records =
             self.sub_patches.is_none() && (self.options.has_host_slots() || self.tagged.is_some());
         let patterns = self.options.backend.has_patterns();
@@ -305,7 +305,8 @@ impl DrawList {
         self.prepared == [prepared.number(), prepared.version()]
     }
 
-    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch, or its slot is vacant.
+    /// The levels of a patch; `prepared` is what the list was made for. None where there is no such patch, its slot is vacant, or it is not
+    /// [chosen](Self::only).
     pub fn levels(&self, prepared: &Prepared, pass: usize, patch: u32) -> Option<Levels> {
         let patches = prepared.passes.get(pass)?;
         let tagged = match &self.tagged {
@@ -346,6 +347,12 @@ impl DrawList {
     pub fn join(&self, levels: &Levels, uv: &[[f32; 2]]) -> Option<Vec<[u32; 3]>> {
         self.options.backend.join(levels, self.cut.spacing, uv)
     }
+}
+
+/// A number that no list had before.
+pub(super) fn new_number() -> u64 {
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    NUMBER.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Patches of a pass that are drawn at once.

@@ -6,6 +6,7 @@
 mod backend;
 mod batch;
 mod batches;
+mod chosen;
 mod culling;
 mod cut;
 mod decision;
@@ -20,6 +21,7 @@ mod sub_patches;
 mod tessellated;
 
 pub use backend::Backend;
+pub use chosen::hull_points;
 pub use culling::Culled;
 pub use cut::Cut;
 pub use decision::{Decision, Metric, Samples};

@@ -100,7 +100,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// The levels of a patch, by depth tags where there are any; None where there is no such patch, or its slot is vacant.
+/// The levels of a patch, by depth tags where there are any; None where there is no such patch, its slot is vacant, or it is not chosen.
 pub(super) fn levels_of(
     pass: &Pass,
     cut: Cut,
@@ -109,7 +109,7 @@ pub(super) fn levels_of(
 ) -> Option<Levels> {
     match tagged {
         Some(_) if pass.is_vacant(patch) => None,
-        Some(levels) => levels.get(patch).copied(),
+        Some(levels) => levels.get(patch).filter(|own| own.inside > 0.0).copied(),
         None => cut.levels(pass, patch),
     }
 }

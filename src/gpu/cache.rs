@@ -25,6 +25,15 @@ pub struct CachePipelines {
     pipelines: Vec<vk::Pipeline>,
 }
 
+/// What a cache is filled for, and how far at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Filling<'a> {
+    /// What is to be drawn.
+    pub list: &'a DrawList,
+    /// The most points that are computed.
+    pub most: u32,
+}
+
 impl CachePipelines {
     /// Builds them for all passes of what was prepared. The pipeline cache may go afterwards.
     ///
@@ -110,12 +119,14 @@ impl Cache {
             return Vec::new();
         };
         let before = self.state.replace(kept.state());
-        let (Some(level), Some(before)) = (self.level, before) else {
-            self.level = None;
+        // What is left of an older state has other numbers by now.
+        let is_left = !self.left.is_empty() && before != Some(kept.state());
+        let (Some(level), Some(before)) = (self.level.filter(|_| !is_left), before) else {
+            self.forget();
             return Vec::new();
         };
         let Some(jobs) = kept.since(before) else {
-            self.level = None;
+            self.forget();
             return Vec::new();
         };
         let known = jobs.into_iter().filter(|&(_, of, _)| of <= level);
@@ -126,15 +137,13 @@ impl Cache {
 impl Pose {
     /// Says that control vertices were written on the device: what was cached of them is of no use any more.
     pub fn positions_changed(&mut self) {
-        if let Some(cache) = &mut self.cache {
-            cache.level = None;
-        }
+        self.forget_cache();
     }
 
     /// Says that commands of [`cmd_cache`](Self::cmd_cache) were never executed: there is nothing in the cache.
     pub fn forget_cache(&mut self) {
         if let Some(cache) = &mut self.cache {
-            cache.level = None;
+            cache.forget();
         }
     }
 
@@ -163,6 +172,31 @@ impl Pose {
         tables: &Tables,
         list: &DrawList,
     ) -> Result<u32> {
+        let fill = Filling {
+            list,
+            most: u32::MAX,
+        };
+        // SAFETY: this function's contract.
+        unsafe { self.cmd_cache_some(device, cmd, layout, pipelines, tables, fill) }
+    }
+
+    /// The same in slices, for what takes long: so many points at most, the rest by later calls. Nothing can be drawn before nothing is
+    /// [left](Self::uncached).
+    ///
+    /// # Errors
+    /// As [`cmd_cache`](Self::cmd_cache).
+    ///
+    /// # Safety
+    /// As [`cmd_cache`](Self::cmd_cache).
+    pub unsafe fn cmd_cache_some(
+        &mut self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipelines: &CachePipelines,
+        tables: &Tables,
+        Filling { list, most }: Filling<'_>,
+    ) -> Result<u32> {
         self.check(tables)?;
         let prepared = tables.prepared();
         let cache = self.cache.as_mut().zip(list.cached_level());
@@ -187,8 +221,9 @@ impl Pose {
             levels.iter().map(move |&jobs| (pass, jobs))
         });
         let jobs = jobs.chain(edited).filter(|(_, jobs)| jobs.count > 0);
-        let jobs: Vec<(usize, Jobs)> = jobs.collect();
+        cache.left.extend(jobs);
         cache.level = Some(needed.max(cache.level.unwrap_or(0)));
+        let jobs = cache.take(most);
         if jobs.is_empty() {
             return Ok(0);
         }
@@ -250,6 +285,20 @@ impl Pose {
         unsafe { cmd_make_visible(device, cmd, compute, readers, read) };
     }
 
+    /// How many control points [`cmd_cache`](Self::cmd_cache) computes before a list is drawn; behind an edit of the tables, all that it has.
+    pub fn uncached(&self, tables: &Tables, list: &DrawList) -> u32 {
+        let (Some(needed), Some((_, points))) = (list.cached_level(), tables.cached()) else {
+            return 0;
+        };
+        let state = tables.kept_cache().map(KeptCache::state);
+        let cache = self.cache.as_ref().filter(|cache| cache.state == state);
+        let Some((cache, level)) = cache.and_then(|cache| Some((cache, cache.level?))) else {
+            return points.count(needed);
+        };
+        let deeper = points.count(needed).saturating_sub(points.count(level));
+        cache.count_left() + deeper
+    }
+
     /// # Errors
     /// [`Misuse::NotCached`] where the cache has not all points that a list is drawn with.
     pub(super) fn check_cached(&self, tables: &Tables, list: &DrawList) -> Result<()> {
@@ -257,8 +306,9 @@ impl Pose {
             return Ok(());
         };
         let state = tables.kept_cache().map(KeptCache::state);
-        let cache = self.cache.as_ref().filter(|cache| cache.state == state);
-        let level = cache.and_then(|cache| cache.level);
+        let cache = self.cache.as_ref();
+        let whole = cache.filter(|cache| cache.state == state && cache.left.is_empty());
+        let level = whole.and_then(|cache| cache.level);
         if level.is_some_and(|level| needed <= level) {
             return Ok(());
         }

@@ -41,7 +41,7 @@ pub use crate::frame::{
 };
 pub use arrival::Arrival;
 pub use buffer::Buffer;
-pub use cache::CachePipelines;
+pub use cache::{CachePipelines, Filling};
 pub(crate) use call::failed;
 pub use decide::{DecidePipeline, Decided};
 pub use draw::Drawing;

@@ -1,5 +1,7 @@
 //! A prepared model on the device, in one pose and with one frame slot: what a program needs that draws a model and waits for it.
 
+mod cached;
+
 use std::ops::Range;
 
 use ash::vk;
@@ -9,11 +11,11 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, Decision, DrawList, Outcome, SurfaceOptions};
 use crate::gpu::workaround::Workaround;
 use crate::gpu::{
-    Arrival, CachePipelines, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Handover,
-    Layout, Memory, Pipelines, PointPipeline, Pose, Retired, Tables, View,
+    Arrival, Counters, DecidePipeline, Decided, Drawing, FrameSlot, Handover, Layout, Memory,
+    Pipelines, PointPipeline, Pose, Retired, Tables, View,
 };
 use crate::mesh::{ChangeSet, Model};
-use crate::method::{CachedPoints, DepthTags, Editable, Prepared, Update};
+use crate::method::{DepthTags, Editable, Prepared, Update};
 
 /// A prepared model on the device: [`Tables`], a [`Pose`] and a [`FrameSlot`] in one. It borrows nothing; the owner calls
 /// [`TessellatedSurface::destroy`].
@@ -321,44 +323,6 @@ impl TessellatedSurface {
             self.pose
                 .cmd_points(device, cmd, layout, pipeline, &self.tables)
         }
-    }
-
-    /// As [`Pose::cmd_cache`].
-    ///
-    /// # Errors
-    /// As there.
-    ///
-    /// # Safety
-    /// As there.
-    pub unsafe fn cmd_cache(
-        &mut self,
-        device: &ash::Device,
-        cmd: vk::CommandBuffer,
-        layout: &Layout,
-        pipelines: &CachePipelines,
-        list: &DrawList,
-    ) -> Result<u32> {
-        let tables = &self.tables;
-        // SAFETY: this function's contract.
-        unsafe {
-            self.pose
-                .cmd_cache(device, cmd, layout, pipelines, tables, list)
-        }
-    }
-
-    /// As [`Tables::cached_points`].
-    pub fn cached_points(&self) -> Option<&CachedPoints> {
-        self.tables.cached_points()
-    }
-
-    /// As [`Drawing::is_cached`].
-    pub fn is_cached(&self, list: &DrawList) -> bool {
-        self.drawing().is_cached(list)
-    }
-
-    /// As [`Pose::positions_changed`].
-    pub fn positions_changed(&mut self) {
-        self.pose.positions_changed();
     }
 
     /// As [`FrameSlot::write_draws`].

@@ -35,6 +35,8 @@ pub enum Slice {
     Last,
     /// All of a part, of a picture that is there and stays around it.
     Part,
+    /// What is left of a part; [`First`](Slice::First) and [`Between`](Slice::Between) come before it.
+    LastOfPart,
 }
 
 impl Slice {
@@ -45,7 +47,7 @@ impl Slice {
 
     /// Whether the picture is there afterwards.
     pub fn ends(self) -> bool {
-        matches!(self, Slice::Whole | Slice::Last | Slice::Part)
+        !matches!(self, Slice::First | Slice::Between)
     }
 }
 
@@ -139,7 +141,7 @@ fn resolved(formats: Formats, slice: Slice) -> vk::AttachmentDescription {
 /// operations are confined to the render area).
 fn stays_around(attachment: vk::AttachmentDescription, slice: Slice) -> vk::AttachmentDescription {
     match slice {
-        Slice::Part => attachment.initial_layout(Layout::TRANSFER_SRC_OPTIMAL),
+        Slice::Part | Slice::LastOfPart => attachment.initial_layout(Layout::TRANSFER_SRC_OPTIMAL),
         _ => attachment,
     }
 }

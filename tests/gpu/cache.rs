@@ -2,7 +2,7 @@
 
 use ash::vk;
 use glam::Vec3;
-use hullform::gpu::{Backend, CachePipelines, Cut, Fill, Residence, SurfaceOptions};
+use hullform::gpu::{Backend, CachePipelines, Cut, Fill, Filling, Residence, SurfaceOptions};
 use hullform::host::Owned;
 use hullform::mesh::{Model, Scheme};
 use hullform::tessellation::Spacing;
@@ -161,6 +161,54 @@ fn what_did_not_move_is_not_computed_again() {
     assert!(same.filter(|(a, b)| bits(a) != bits(b)).count() > 1000);
     drop(ring);
     drop(loaded);
+    gpu.finish();
+}
+
+/// What takes long is computed in slices, each of which is submitted by itself.
+#[test]
+fn a_cache_that_is_filled_in_slices_has_the_same_bits_and_each_point_once() {
+    let Some(gpu) = Gpu::open() else { return };
+    let model = shapes::built_in("hull");
+    let [deep, shallow] = [8.0, 2.0].map(|level| cut(level, Spacing::Equal));
+    let mut loaded = load(&gpu, &model, Residence::Cache, Backend::Tessellator, deep);
+    let [deep_list, shallow_list] =
+        [deep, shallow].map(|cut| loaded.surface().draw_list(cut, None).expect("a cut"));
+    let (device, layout, cache) = (gpu.device.raw(), gpu.layout(), vk::PipelineCache::null());
+    let all = loaded.surface().uncached(&deep_list);
+    // SAFETY: all of one live device.
+    let pipelines = unsafe { CachePipelines::new(device, layout, cache, loaded.prepared()) };
+    // SAFETY: as above; they were just made.
+    let pipelines = unsafe { Owned::new(&gpu.device, pipelines.expect("its method has a cache")) };
+    let (mut sum, most) = (0, 777);
+    // The deeper levels are asked for while those of the other list are not whole.
+    for list in std::iter::once(&shallow_list).chain(std::iter::repeat(&deep_list)) {
+        let left = loaded.surface().uncached(list);
+        assert_eq!(left == 0, loaded.surface().is_cached(list));
+        if left == 0 {
+            break;
+        }
+        let mut points = 0;
+        let fill = Filling { list, most };
+        let filled = gpu.device.submit(|cmd| {
+            let surface = loaded.surface_mut();
+            // SAFETY: recording on the device that made everything, outside of a render pass.
+            points = unsafe {
+                surface.cmd_upload(device, cmd);
+                surface.cmd_cache_some(device, cmd, layout, &pipelines, fill)
+            }?;
+            Ok(())
+        });
+        filled.expect("there is room");
+        assert_eq!(points, left.min(most));
+        assert_eq!(loaded.surface().uncached(list), left - points);
+        sum += points;
+    }
+    assert!(sum == all && all > 3 * most, "{sum} of {all}");
+    let own = loaded.capture(deep, Fill::Discard).expect("it is drawn");
+    let mut whole = load(&gpu, &model, Residence::Cache, Backend::Tessellator, deep);
+    let right = whole.capture(deep, Fill::Discard).expect("it is drawn");
+    assert_same_bits("in slices", &own, &right);
+    drop((whole, loaded, pipelines));
     gpu.finish();
 }
 

@@ -12,8 +12,8 @@ use x11rb::protocol::xproto::{
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
-/// Size of the screen.
-const SCREEN: &str = "1400x1000x24";
+/// Size of the screen: that of two monitors side by side, which are one screen in X.
+const SCREEN: &str = "2800x1000x24";
 
 /// A server of X11 without a screen.
 pub struct Display {
@@ -217,6 +217,15 @@ impl Hand {
     pub fn resize(&self, window: Window, [width, height]: [u32; 2]) {
         let size = ConfigureWindowAux::new().width(width).height(height);
         let done = self.connection.configure_window(window, &size);
+        done.expect("it is asked")
+            .check()
+            .expect("the window is there");
+    }
+
+    /// Moves a window.
+    pub fn place(&self, window: Window, [x, y]: [i32; 2]) {
+        let place = ConfigureWindowAux::new().x(x).y(y);
+        let done = self.connection.configure_window(window, &place);
         done.expect("it is asked")
             .check()
             .expect("the window is there");

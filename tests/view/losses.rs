@@ -79,6 +79,7 @@ fn told(words: &'static str) -> impl Fn(&serde_json::Value) -> bool {
     }
 }
 
+/// On a display of which all formats encode what shaders write, too.
 #[test]
 fn a_lost_surface_is_made_anew_and_the_picture_comes_back() {
     let Some(place) = Place::new() else { return };
@@ -89,6 +90,10 @@ fn a_lost_surface_is_made_anew_and_the_picture_comes_back() {
     usual.quit();
     usual.end();
     place.driver.reports();
+    let encoding = place.open(&Fault::Encode);
+    encoding.press('1');
+    assert!(encoding.scene() == seen, "encoded by the display's images");
+    place.close(encoding);
     for call in ["vkAcquireNextImageKHR", "vkQueuePresentKHR"] {
         let session = place.open(&Fault::once(call, 25, lost));
         stir(&session, call, told("made anew"));

@@ -8,6 +8,7 @@ use hullform::method::METHODS;
 use serde_json::Value;
 
 use super::display;
+use crate::display::Display;
 use crate::window::{Picture, Session, keys, read_png};
 
 /// At most so much differs on average, in steps of 255: `render` has finer edges, and draws the lines of patches half as wide.
@@ -34,37 +35,136 @@ const WALKS: [(&str, &str); 4] = [
 #[test]
 fn every_method_back_end_colour_and_camera_is_as_render_draws_it() {
     let Some(display) = display() else { return };
-    let mut seen: [BTreeSet<String>; 5] = Default::default();
-    let mut pictures = 0;
+    let mut seen = Seen::default();
     for (model, walk) in WALKS {
+        let place = Place::open(&display, model);
+        press(&place.session, 'f');
+        for step in walk.split(' ') {
+            let session = &place.session;
+            step.chars().for_each(|sign| press(session, sign));
+            place.compares(step, &mut seen);
+        }
+        place.close();
+    }
+    println!("{} pictures", seen.pictures);
+    let [methods, rest @ ..] = seen.facts.each_ref().map(BTreeSet::len);
+    assert!(
+        methods == METHODS.len() && rest == [3, COLOURS, 2, 2],
+        "{:?}",
+        seen.facts
+    );
+}
+
+/// Every method in every colour takes minutes: with `HULLFORM_VIEW_SWEEP=1`.
+#[test]
+fn every_method_is_in_every_colour_as_render_draws_it() {
+    if std::env::var_os("HULLFORM_VIEW_SWEEP").is_none() {
+        return;
+    }
+    let Some(display) = display() else { return };
+    let mut seen = Seen::default();
+    // Under a scheme of triangles those that the first one refuses.
+    for schemes in ["", "MM"] {
+        let place = Place::open(&display, "builtin:cube");
+        let session = &place.session;
+        press(session, 'f');
+        schemes.chars().for_each(|sign| press(session, sign));
+        for _ in METHODS {
+            press(session, 'm');
+            let state = session.until("refused or drawn", |state| {
+                let model = &state["models"][0];
+                model["error"].is_string() || state["cut"]["method"] == model["methods"][0]
+            });
+            let method = state["models"][0]["methods"][0].to_string();
+            let known = seen.facts[0].contains(&method);
+            if known || state["models"][0]["error"].is_string() {
+                continue;
+            }
+            for _ in 0..COLOURS {
+                press(session, 'c');
+                place.compares(&method, &mut seen);
+            }
+        }
+        place.close();
+    }
+    println!("{} pictures", seen.pictures);
+    assert_eq!(seen.facts[0].len(), METHODS.len(), "{:?}", seen.facts[0]);
+    assert_eq!(seen.pictures, METHODS.len() * COLOURS);
+}
+
+/// The picture of the README, `HULLFORM_VIEW_PICTURE=examples/view.png`: it is taken anew where the window looks otherwise.
+#[test]
+fn a_picture_for_the_readme() {
+    let Some(file) = std::env::var_os("HULLFORM_VIEW_PICTURE") else {
+        return;
+    };
+    let Some(display) = display() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = ["--size", "1280x800", "builtin:hull"];
+    let session = Session::open_with(&display, folder.path(), &options, |_| {});
+    session.press('s');
+    session.until("split", |state| state["compare"]["beside"] == "split");
+    (0..3).for_each(|_| press(&session, 'c'));
+    session.hand.to(480.0, 400.0);
+    session.hand.to(482.0, 400.0);
+    session.until("numbers under the cursor", |state| {
+        state["probe"].is_object()
+    });
+    session.picture();
+    session.hand.key(keys::F12, &[]);
+    std::fs::copy(session.file("hullform-1.png"), &file).expect("it is written");
+    session.quit();
+    session.end();
+}
+
+/// What has been compared: pictures, and the methods, back-ends, colours, residences and cameras in them.
+#[derive(Default)]
+struct Seen {
+    facts: [BTreeSet<String>; 5],
+    pictures: usize,
+}
+
+/// How many colourings there are.
+const COLOURS: usize = 9;
+
+/// A window on a model, without panels.
+struct Place {
+    session: Session,
+    model: &'static str,
+    _folder: tempfile::TempDir,
+}
+
+impl Place {
+    fn open(display: &Display, model: &'static str) -> Place {
         let folder = tempfile::tempdir().expect("a folder");
         let options = ["--size", "560x420", model];
-        let session = Session::open_with(&display, folder.path(), &options, |command| {
+        let session = Session::open_with(display, folder.path(), &options, |command| {
             command.arg("--validation");
         });
         session.hand.key(keys::TAB, &[]);
         session.until("panels have gone", |state| state["panels"] == false);
-        press(&session, 'f');
-        for step in walk.split(' ') {
-            step.chars().for_each(|sign| press(&session, sign));
-            if let Some(words) = compared(&session, &mut seen) {
-                assert!(words.is_empty(), "{model}, after {step}: {words}");
-                pictures += 1;
-            }
+        Place {
+            session,
+            model,
+            _folder: folder,
         }
-        let state = session.state();
+    }
+
+    /// Compares what is seen, unless the model is refused.
+    fn compares(&self, step: &str, seen: &mut Seen) {
+        if let Some(words) = compared(&self.session, &mut seen.facts) {
+            assert!(words.is_empty(), "{}, after {step}: {words}", self.model);
+            seen.pictures += 1;
+        }
+    }
+
+    fn close(self) {
+        let state = self.session.state();
         assert_eq!(state["validation"], 0, "{state:#}");
-        session.quit();
-        let (code, words) = session.end();
+        self.session.quit();
+        let (code, words) = self.session.end();
         assert_eq!(code, Some(0), "{words}");
     }
-    println!("{pictures} pictures");
-    let counts = seen.each_ref().map(BTreeSet::len);
-    let [methods, ..] = counts;
-    assert!(
-        methods == METHODS.len() && counts[1..] == [3, 9, 2, 2],
-        "{seen:?}"
-    );
 }
 
 /// Presses a key, and waits until it has done what it does.

@@ -307,12 +307,13 @@ fn changes(session: &Session) {
 pub fn pick_an_edge(session: &Session) {
     let [x, y, width, height] = session.area().map(f64::from);
     for step in 0..40 {
-        session
-            .hand
-            .click([x + 0.5 * width, y + (0.5 - 0.01 * f64::from(step)) * height]);
-        session.picture();
-        let edges = session.state()["selection"]["edges"].clone();
-        if edges.as_array().is_some_and(|edges| edges.len() == 1) {
+        let frames = session.state()["frames"].as_u64();
+        let at = [x + 0.5 * width, y + (0.5 - 0.01 * f64::from(step)) * height];
+        session.hand.click(at);
+        let is_seen = |state: &Value| state["frames"].as_u64() > frames;
+        let state = session.until("the click is seen", is_seen);
+        let edges = state["selection"]["edges"].as_array();
+        if edges.is_some_and(|edges| edges.len() == 1) {
             return;
         }
     }
@@ -400,6 +401,19 @@ fn reads_again(session: &Session) {
 }
 
 fn goes_along_with_the_window(session: &Session) {
+    let seen = session.scene();
+    for (x, what) in [
+        (900, "on both monitors"),
+        (1420, "on the second one"),
+        (0, "back"),
+    ] {
+        session.hand.place(session.window, [x, 0]);
+        session.press('g');
+        session.until("a cage", |state| state["look"]["cage"] == true);
+        session.press('g');
+        session.until("no cage", |state| state["look"]["cage"] == false);
+        assert!(session.scene() == seen, "{what} it is the same picture");
+    }
     session.hand.resize(session.window, [900, 640]);
     session.until("smaller", |state| {
         state["window"] == serde_json::json!([900, 640])

@@ -11,6 +11,9 @@ use crate::display::{Display, Hand};
 /// How long anything may take: software draws, and machines are busy.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// How long a picture that rests does not change.
+const MOMENT: Duration = Duration::from_millis(250);
+
 /// Keys by the numbers that X11 has for their symbols.
 pub mod keys {
     pub const CONTROL: u32 = 0xffe3;
@@ -176,7 +179,7 @@ impl Session {
             }
             last = Some((frames, now));
             assert!(started.elapsed() < PATIENCE, "the picture never rests");
-            std::thread::sleep(Duration::from_millis(250));
+            std::thread::sleep(MOMENT);
         }
     }
 

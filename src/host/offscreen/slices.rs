@@ -15,6 +15,7 @@ pub(super) struct Slices {
     between: vk::RenderPass,
     last: vk::RenderPass,
     part: vk::RenderPass,
+    last_of_part: vk::RenderPass,
     /// Of colour and depth alone.
     framebuffer: vk::Framebuffer,
 }
@@ -32,6 +33,7 @@ impl OffscreenTarget {
             between: vk::RenderPass::null(),
             last: vk::RenderPass::null(),
             part: vk::RenderPass::null(),
+            last_of_part: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
         };
         // SAFETY: the device is live; formats and samples were checked against its limits.
@@ -40,6 +42,7 @@ impl OffscreenTarget {
         slices.between = make(Slice::Between)?;
         slices.last = make(Slice::Last)?;
         slices.part = make(Slice::Part)?;
+        slices.last_of_part = make(Slice::LastOfPart)?;
         let views = [self.images[0].view, self.images[1].view];
         let info = vk::FramebufferCreateInfo::default()
             .render_pass(slices.first)
@@ -68,7 +71,8 @@ impl OffscreenTarget {
     /// their order, with the same area; other work of the queue may come between them. A ring is used by one pass at a time: behind the first slice
     /// [`cmd_ring_barrier`](crate::gpu::ring::cmd_ring_barrier) comes before each.
     ///
-    /// A part ([`Slice::Part`]) is drawn at once, into a picture that is there: what lies around the [area](Self::area) stays as it is.
+    /// A part ([`Slice::Part`]) is drawn into a picture that is there: what lies around the [area](Self::area) stays as it is. It takes several slices, up to
+    /// [`Slice::LastOfPart`], only where the target [keeps its picture](Self::keeps_picture).
     ///
     /// # Panics
     /// Where slices were not [allowed](Self::allow_slices).
@@ -83,6 +87,7 @@ impl OffscreenTarget {
             Slice::Between => (slices.between, slices.framebuffer),
             Slice::Last => (slices.last, self.framebuffer),
             Slice::Part => (slices.part, self.framebuffer),
+            Slice::LastOfPart => (slices.last_of_part, self.framebuffer),
         };
         // SAFETY: this function's contract.
         unsafe {
@@ -101,7 +106,11 @@ impl Drop for Slices {
         // SAFETY: all of it was made from this device, which waits for each submission, so nothing is in use; null handles are allowed.
         unsafe {
             device.destroy_framebuffer(self.framebuffer, None);
-            for pass in [self.first, self.between, self.last, self.part] {
+            let of_parts = [self.part, self.last_of_part];
+            for pass in [self.first, self.between, self.last]
+                .into_iter()
+                .chain(of_parts)
+            {
                 device.destroy_render_pass(pass, None);
             }
         }

@@ -194,7 +194,7 @@ passed_on! {
     vkGetPhysicalDeviceSurfaceCapabilitiesKHR: PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR(
         device: vk::PhysicalDevice, surface: vk::SurfaceKHR, able: *mut vk::SurfaceCapabilitiesKHR) nothing;
     vkGetPhysicalDeviceSurfaceFormatsKHR: PFN_vkGetPhysicalDeviceSurfaceFormatsKHR(
-        device: vk::PhysicalDevice, surface: vk::SurfaceKHR, count: *mut u32, formats: *mut vk::SurfaceFormatKHR) nothing;
+        device: vk::PhysicalDevice, surface: vk::SurfaceKHR, count: *mut u32, formats: *mut vk::SurfaceFormatKHR) || encode(formats, count);
     vkGetPhysicalDeviceSurfacePresentModesKHR: PFN_vkGetPhysicalDeviceSurfacePresentModesKHR(
         device: vk::PhysicalDevice, surface: vk::SurfaceKHR, count: *mut u32, modes: *mut vk::PresentModeKHR) nothing;
     vkCreateGraphicsPipelines: PFN_vkCreateGraphicsPipelines(
@@ -203,6 +203,22 @@ passed_on! {
     vkCreateComputePipelines: PFN_vkCreateComputePipelines(
         device: vk::Device, cache: vk::PipelineCache, count: u32, infos: *const vk::ComputePipelineCreateInfo<'_>,
         callbacks: Callbacks<'_>, made: *mut vk::Pipeline) || pipelines_made(made, count);
+}
+
+/// # Safety
+/// So many formats are there, unless it is null: then they are counted.
+unsafe fn encode(formats: *mut vk::SurfaceFormatKHR, count: *mut u32) {
+    if formats.is_null() || !state::with(|state| state.encodes()) {
+        return;
+    }
+    // SAFETY: this function's contract.
+    for own in unsafe { std::slice::from_raw_parts_mut(formats, *count as usize) } {
+        own.format = match own.format {
+            vk::Format::B8G8R8A8_UNORM => vk::Format::B8G8R8A8_SRGB,
+            vk::Format::R8G8B8A8_UNORM => vk::Format::R8G8B8A8_SRGB,
+            other => other,
+        };
+    }
 }
 
 /// # Safety

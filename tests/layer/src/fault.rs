@@ -24,6 +24,8 @@ pub enum Fault {
     },
     /// Draws are recorded only in part.
     Lose(Lost),
+    /// All formats of a display encode what is written to them.
+    Encode,
     /// A fault of those processes alone among whose arguments is this one.
     Only(String, Box<Fault>),
 }
@@ -70,6 +72,7 @@ impl fmt::Display for Fault {
                 let (calls, code) = (calls.join("+"), code.as_raw());
                 write!(f, "fail {how} {occurrence} {code} {calls}")
             }
+            Fault::Encode => write!(f, "encode"),
             Fault::Lose(Lost::All) => write!(f, "lose all"),
             Fault::Lose(Lost::One(number)) => write!(f, "lose one {number}"),
             Fault::Lose(Lost::Half(number)) => write!(f, "lose half {number}"),
@@ -93,6 +96,7 @@ impl FromStr for Fault {
                 code: vk::Result::from_raw(code.parse().map_err(|_| unknown())?),
                 lasting: how == "lasting",
             },
+            ["encode"] => Fault::Encode,
             ["lose", "all"] => Fault::Lose(Lost::All),
             ["lose", "one", which] => Fault::Lose(Lost::One(number(which)?)),
             ["lose", "half", which] => Fault::Lose(Lost::Half(number(which)?)),

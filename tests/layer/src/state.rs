@@ -109,6 +109,15 @@ impl State {
         draw
     }
 
+    /// Whether all formats of a display encode.
+    pub fn encodes(&mut self) -> bool {
+        let encodes = self.fault() == Fault::Encode;
+        if encodes {
+            self.fire();
+        }
+        encodes
+    }
+
     fn fire(&mut self) {
         if !self.fired {
             self.fired = true;

@@ -66,12 +66,24 @@ pub struct Drawn {
     pub list: Option<DrawList>,
     /// The vertices of that.
     pub vertices: u64,
+    /// What is drawn of it where a part of the picture is drawn anew.
+    pub few: Option<Few>,
     /// Seconds to prepare it, and to bring it to the device.
     pub seconds: [f64; 2],
     /// Why methods that come before the one that did it refused.
     pub refusals: Vec<String>,
     /// How far larger buffers are, which an edit made.
     pub growth: Growth,
+}
+
+/// Some of a surface's patches.
+pub struct Few {
+    /// They alone.
+    pub list: DrawList,
+    /// The work that they are, by batch; none where there is nothing to be drawn.
+    pub works: Arc<[f64]>,
+    /// Their vertices.
+    pub vertices: u64,
 }
 
 /// How far buffers are that were made larger.
@@ -226,6 +238,7 @@ impl Context {
             surface,
             cache,
             list: None,
+            few: None,
             vertices: 0,
             seconds: [0.0; 2],
             refusals: Vec::new(),

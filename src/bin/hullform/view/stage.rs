@@ -136,7 +136,7 @@ impl Staged {
             drawn.edit(live.side(number), update, context)?;
             amends.add_patches(drawn, update, placed);
         }
-        self.amends.add_vertices(&followed.vertices, &self.placed);
+        self.amends.add_lines(&followed.vertices, &self.placed);
         self.decided = None;
         self.live = Some(live);
         Ok(())
@@ -405,7 +405,7 @@ impl Staged {
             // SAFETY: nothing is drawn at this time; device and memory made the surface.
             unsafe { drawn.surface.write_draws(device.raw(), memory, &list) }?;
             drawn.vertices = vertices(drawn.surface.prepared(), &list);
-            drawn.list = Some(list);
+            (drawn.list, drawn.few) = (Some(list), None);
         }
         self.decided = Some(decision);
         Ok(())

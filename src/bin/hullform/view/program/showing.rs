@@ -12,6 +12,7 @@ use crate::view::canvas::Panels;
 use crate::view::context::Key;
 use crate::view::haste::Sent;
 use crate::view::overlay::Overlay;
+use crate::view::stage::Stage;
 
 impl Program {
     /// How long until another picture may be due, where there is one that is coarser.
@@ -50,7 +51,7 @@ impl Program {
             true => self.haste.most(),
             false => f64::INFINITY,
         };
-        let sliced = self.stage.slice(most)?;
+        let sliced = self.stage.slice(most);
         let (full, scene) = (self.viewer.cutting.cut().level, self.stage.scene());
         let is_coarser = scene.is_some_and(|scene| scene.level < full);
         let is_part = scene.is_some_and(|scene| scene.part.is_some());
@@ -116,7 +117,11 @@ impl Program {
         };
         let moved = self.drawn.as_ref() != Some(drawing);
         let level = self.haste.level(self.viewer.cutting.cut().level);
-        let is_late = moved && scene.level > level && self.haste.is_slow() && !self.shooting;
+        // What another edit has changed is drawn behind a part.
+        let known = self.drawn.as_ref();
+        let is_followed = scene.part.is_some() && known.is_some_and(|d| drawing.is_edited(d));
+        let is_slow = scene.level > level && self.haste.is_slow() && !self.shooting;
+        let is_late = moved && !is_followed && is_slow;
         if is_late || scene.area != self.viewer.area {
             self.stage.abandon();
             self.drawn = None;
@@ -172,7 +177,7 @@ impl Program {
                 return self.fails(error);
             }
             stage.begin(viewer, level, context);
-            let work = stage.scene().map_or(0.0, |scene| scene.work(&stage.parts));
+            let work = stage.scene().map_or(0.0, |scene| scene.work());
             self.haste.begins(work, level >= full.level);
         }
         Ok(())
@@ -189,8 +194,19 @@ impl Program {
             return self.fails(error).map(|()| true);
         }
         let haste = self.haste;
-        if !stage.amend(viewer, level, |work| haste.is_quick(work), context) {
-            return Ok(false);
+        let coarser = Cut {
+            level: haste.level(full.level),
+            ..full
+        };
+        // A part is not coarser, and behind it nothing is left to be drawn.
+        let is_soon = |work, stage: &Stage| {
+            let is_soon = haste.is_quick(work) || work <= stage.work(coarser)?;
+            Ok(is_soon)
+        };
+        match stage.amend(viewer, level, is_soon, context) {
+            Ok(false) => return Ok(false),
+            Ok(true) => {}
+            Err(error) => return self.fails(error).map(|()| true),
         }
         if let Some(part) = stage.scene().and_then(|scene| scene.part) {
             self.canvas.confine(part);

@@ -1,44 +1,44 @@
 //! What edits have changed of the picture: where that is a part of it, only that is drawn, and the rest stays.
 //!
-//! A surface lies in the convex hull of the control vertices that it is a sum of ([`Pass::hull`](hullform::method::Pass::hull)). So what an edit has changed lies around the
-//! picture of the vertices of the patches that it has changed, as they were and as they are; and what is drawn there are the patches whose vertices have a picture that meets that.
-
-use std::sync::Arc;
+//! A surface lies in the convex hull of the control vertices that it is a sum of, or of its Bezier points ([`hull_points`]). So what an edit has changed lies around the
+//! picture of these points of the patches that it has changed, as they were and as they are; and what is drawn there are the patches whose points have a picture that meets that.
 
 use glam::{Mat4, Vec2, Vec3};
-use hullform::gpu::{Decides, Residence};
+use hullform::Result;
+use hullform::frame::hull_points;
+use hullform::gpu::{Cut, Decides, Residence};
 use hullform::method::Update;
 
-use super::scene::work_of;
-use super::{Side, Stage, view};
-use crate::view::context::{Context, Drawn};
+use super::scene::{work, work_of};
+use super::{Side, Stage, Staged, view};
+use crate::view::context::{Context, Drawn, Few};
 use crate::view::viewer::Viewer;
 use crate::view::viewport::Area;
 
-/// Points of the window around what has changed in which lines and dots of the cage lie: half of the widest.
+/// Points of the window around what has changed of the cage in which its lines and dots lie: half of the widest.
 const LINES: f32 = 6.0;
 /// Pixels around a patch in which its triangles, and the lines of these, leave anything: rounding, and half a line.
 const BESIDE: f32 = 3.0;
-/// What takes less than such a share of the whole picture's work is drawn sooner than a coarser picture, of which each patch is still to be drawn.
-const FEW: f64 = 8.0;
 /// A share of the vertices, beyond which what moves is taken for all.
 const MANY: usize = 8;
 
 /// What has changed of a part.
 #[derive(Default)]
 pub(super) struct Amends {
-    /// Places of the vertices around it, before and after, in local units.
+    /// Points around the patches of it, before and after, in local units.
     points: Vec<Vec3>,
+    /// Vertices around what has changed of the cage.
+    lined: Vec<Vec3>,
     /// Whether nobody knows where it is.
     is_anywhere: bool,
 }
 
 /// A part of the picture that is another one.
-pub(super) struct Amended {
+struct Amended {
     /// Where it is in the window.
-    pub area: Area,
-    /// By part and side, the batches that may be seen there.
-    pub batches: Vec<Vec<Arc<[bool]>>>,
+    area: Area,
+    /// By part and side, the patches that may be seen there.
+    few: Vec<Vec<Option<Few>>>,
 }
 
 impl Amends {
@@ -53,17 +53,17 @@ impl Amends {
         let prepared = drawn.surface.prepared();
         for (pass, change) in prepared.passes.iter().zip(&update.passes) {
             for &slot in change.slots() {
-                let (slot, hull) = (slot as usize, pass.hull(slot as usize));
-                self.is_anywhere |= hull.is_empty() && !pass.is_vacant(slot);
-                self.add_vertices(hull, placed);
+                let hull = hull_points(pass, slot as usize, placed);
+                self.is_anywhere |= hull.is_empty() && !pass.is_vacant(slot as usize);
+                self.points.extend(hull);
             }
         }
     }
 
-    /// Vertices, at these places.
-    pub fn add_vertices(&mut self, vertices: &[u32], placed: &[Vec3]) {
+    /// Vertices around lines of the cage, at these places.
+    pub fn add_lines(&mut self, vertices: &[u32], placed: &[Vec3]) {
         let places = vertices.iter().filter_map(|&v| placed.get(v as usize));
-        self.points.extend(places);
+        self.lined.extend(places);
     }
 
     /// The patches of which vertices have moved from some places to others.
@@ -79,7 +79,7 @@ impl Amends {
         for vertex in (0..moved.len() as u32).filter(has_moved) {
             places
                 .iter()
-                .for_each(|placed| self.add_vertices(&[vertex], placed));
+                .for_each(|placed| self.add_lines(&[vertex], placed));
         }
         for pass in &drawn.surface.prepared().passes {
             for patch in 0..pass.extent() {
@@ -88,7 +88,7 @@ impl Amends {
                 if hull.iter().any(has_moved) {
                     places
                         .iter()
-                        .for_each(|placed| self.add_vertices(hull, placed));
+                        .for_each(|placed| self.add_lines(hull, placed));
                 }
             }
         }
@@ -108,21 +108,19 @@ struct Lens {
 }
 
 impl Lens {
-    /// The box around the picture of points, in pixels; None where one is not before the eye.
-    fn frame(&self, points: impl Iterator<Item = Vec3>) -> Option<[Vec2; 2]> {
+    /// Where a point is seen, in pixels; None where it is not before the eye.
+    fn at(&self, point: Vec3) -> Option<Vec2> {
         let port = self.viewport;
         let corner = Vec2::new(port.x as f32, port.y as f32);
         let half = 0.5 * Vec2::new(port.width as f32, port.height as f32);
-        let mut frame = [Vec2::INFINITY, Vec2::NEG_INFINITY];
-        for point in points {
-            let clip = self.clip * point.extend(1.0);
-            let at = corner + half * (Vec2::ONE + Vec2::new(clip.x, clip.y) / clip.w);
-            if !(clip.w > 0.0 && at.is_finite()) {
-                return None;
-            }
-            frame = [frame[0].min(at), frame[1].max(at)];
-        }
-        Some(frame)
+        let clip = self.clip * point.extend(1.0);
+        let at = corner + half * (Vec2::ONE + Vec2::new(clip.x, clip.y) / clip.w);
+        (clip.w > 0.0 && at.is_finite()).then_some(at)
+    }
+
+    /// The box around the picture of points; None where one is not before the eye.
+    fn frame(&self, points: &[Vec3]) -> Option<[Vec2; 2]> {
+        bounds(points.iter().map(|&point| self.at(point)))
     }
 }
 
@@ -145,99 +143,151 @@ impl Stage {
         (is_plain && is_known).then_some(level)
     }
 
-    /// Begins a scene of what edits have changed since the picture was drawn at this level, when all has been decided; whether that could be, and is work enough for a frame.
+    /// Begins a scene of what edits have changed since the picture was drawn at this level, when all has been decided; whether that could be, and is done sooner than
+    /// another picture of all, which may be coarser.
+    ///
+    /// # Errors
+    /// What the library refuses.
     pub fn amend(
         &mut self,
         viewer: &Viewer,
         level: f32,
-        is_quick: impl Fn(f64) -> bool,
+        is_soon: impl FnOnce(f64, &Stage) -> Result<bool>,
         context: &Context,
-    ) -> bool {
-        let Some(amended) = self.amended(viewer) else {
-            return false;
+    ) -> Result<bool> {
+        let Some(amended) = self.amended(viewer)? else {
+            return Ok(false);
         };
-        let shown = self.shown;
-        let amends = self.parts.iter_mut().map(|s| std::mem::take(&mut s.amends));
-        let amends: Vec<Amends> = amends.collect();
-        self.begin_of(viewer, level, Some(&amended), context);
-        let work = self.scene().map_or(0.0, |scene| scene.work(&self.parts));
-        if is_quick(work) || work * FEW <= self.work() {
-            return true;
+        let few = amended.few.iter().flatten().flatten();
+        let work = few.flat_map(|few| few.works.iter()).sum();
+        if !is_soon(work, self)? {
+            return Ok(false);
         }
-        (self.scene, self.shown) = (None, shown);
-        let parts = self.parts.iter_mut().zip(amends);
-        parts.for_each(|(staged, amends)| staged.amends = amends);
-        false
+        let device = context.device();
+        for (staged, all) in self.parts.iter_mut().zip(amended.few) {
+            // What was decided for all is not on the device any more.
+            staged.decided = None;
+            for (drawn, few) in staged.sides.iter_mut().zip(all) {
+                let Some(few) = few else { continue };
+                let memory = &mut device.memory();
+                // SAFETY: nothing is drawn at this time; device and memory made the surface.
+                unsafe { drawn.surface.write_draws(device.raw(), memory, &few.list) }?;
+                drawn.few = Some(few);
+            }
+        }
+        self.begin_of(viewer, level, Some(amended.area), context);
+        Ok(true)
     }
 
-    /// The work that all surfaces are at the level that was decided.
-    fn work(&self) -> f64 {
-        let lists = self.parts.iter().flat_map(|part| &part.sides);
-        let batches = lists.filter_map(|drawn| drawn.list.as_ref());
-        batches.flat_map(|list| list.batches()).map(work_of).sum()
+    /// The work that all surfaces are at a cut.
+    ///
+    /// # Errors
+    /// What the library refuses.
+    pub fn work(&self, cut: Cut) -> Result<f64> {
+        let mut work = 0.0;
+        for drawn in self.parts.iter().flat_map(|part| &part.sides) {
+            let list = drawn.surface.draw_list(cut, None)?;
+            work += list.batches().map(work_of).sum::<f64>();
+        }
+        Ok(work)
     }
 
     /// What has changed of the picture; None where that may be all.
-    fn amended(&self, viewer: &Viewer) -> Option<Amended> {
+    fn amended(&self, viewer: &Viewer) -> Result<Option<Amended>> {
         let sides = Stage::sides(viewer);
-        let mut frame = [Vec2::INFINITY, Vec2::NEG_INFINITY];
+        let Some(frame) = self.changed(viewer, &sides) else {
+            return Ok(None);
+        };
+        let area = around(frame, viewer.area);
+        let mut few = Vec::new();
         for (number, staged) in self.parts.iter().enumerate() {
-            if staged.amends.is_anywhere {
-                return None;
-            }
-            for side in &sides {
+            let mut own: Vec<Option<Few>> = staged.sides.iter().map(|_| None).collect();
+            for side in sides.iter().filter(|s| s.recipe < staged.sides.len()) {
                 let lens = self.lens(viewer, number, side);
-                let [low, high] = lens.frame(staged.amends.points.iter().copied())?;
-                frame = [frame[0].min(low), frame[1].max(high)];
+                own[side.recipe] = staged.few(side.recipe, &lens, area)?;
             }
+            few.push(own);
         }
-        let area = around(frame, LINES * viewer.scale + BESIDE, viewer.area);
-        let mut batches = Vec::new();
-        for number in 0..self.parts.len() {
-            let mut own = vec![Arc::from([]); self.parts[number].sides.len()];
-            for side in &sides {
-                if side.recipe < own.len() {
-                    own[side.recipe] = self.batches(viewer, number, side, area)?;
-                }
-            }
-            batches.push(own);
-        }
-        Some(Amended { area, batches })
+        Ok(Some(Amended { area, few }))
     }
 
-    /// Which batches of a part may be seen in an area.
-    fn batches(
-        &self,
-        viewer: &Viewer,
-        part: usize,
-        side: &Side,
-        area: Area,
-    ) -> Option<Arc<[bool]>> {
-        let staged = &self.parts[part];
-        let (drawn, lens) = (&staged.sides[side.recipe], self.lens(viewer, part, side));
-        let place = |&vertex: &u32| staged.placed[vertex as usize];
-        let passes = &drawn.surface.prepared().passes;
-        let batches = drawn.list.as_ref()?.batches().map(|batch| {
-            let pass = &passes[batch.pass()];
-            batch.patches().any(|patch| {
-                let hull = pass.hull(patch as usize);
-                let frame = lens.frame(hull.iter().map(place));
-                let is_unknown = hull.is_empty() && !pass.is_vacant(patch as usize);
-                is_unknown || frame.is_none_or(|frame| meets(frame, area))
-            })
-        });
-        Some(batches.collect())
+    /// The box around what has changed in the window, and leaves anything beside it; None where that may be anywhere.
+    fn changed(&self, viewer: &Viewer, sides: &[Side]) -> Option<[Vec2; 2]> {
+        let mut all = NOTHING;
+        for (number, staged) in self.parts.iter().enumerate() {
+            let amends = &staged.amends;
+            let lines = LINES * viewer.scale + BESIDE;
+            for lens in sides.iter().map(|side| self.lens(viewer, number, side)) {
+                for (points, beside) in [(&amends.points, BESIDE), (&amends.lined, lines)] {
+                    let [low, high] = lens.frame(points).filter(|_| !amends.is_anywhere)?;
+                    all = [all[0].min(low - beside), all[1].max(high + beside)];
+                }
+            }
+        }
+        Some(all)
     }
 }
 
-/// The pixels around a frame, so many more on each side, within an area; one at least.
-fn around([low, high]: [Vec2; 2], more: f32, within: Area) -> Area {
+impl Staged {
+    /// What of a side may be seen in an area.
+    fn few(&self, recipe: usize, lens: &Lens, area: Area) -> Result<Option<Few>> {
+        let drawn = &self.sides[recipe];
+        let Some(list) = &drawn.list else {
+            return Ok(None);
+        };
+        let (prepared, cut) = (drawn.surface.prepared(), list.cut());
+        let places: Vec<Option<Vec2>> = self.placed.iter().map(|&at| lens.at(at)).collect();
+        let may_be_seen = |pass: usize, patch: u32| {
+            let (pass, patch) = (&prepared.passes[pass], patch as usize);
+            let hull = pass.hull(patch);
+            // What is not known is anywhere, and so is what may be behind the eye.
+            let meets = |frame: Option<_>| frame.is_none_or(|frame| meets(frame, area));
+            let is_near =
+                hull.is_empty() || meets(bounds(hull.iter().map(|&v| places[v as usize])));
+            let is_there = || meets(lens.frame(&hull_points(pass, patch, &self.placed)));
+            is_near && (pass.spline(patch).is_none() || is_there())
+        };
+        let list = list.clone().only(prepared, may_be_seen)?;
+        let mut all = 0;
+        let works = list.batches().map(|batch| {
+            let pass = batch.pass();
+            let own = batch.patches().map(|patch| {
+                let vertices = list.vertices(prepared, pass, patch);
+                all += u64::from(vertices);
+                match vertices {
+                    0 => 0.0,
+                    _ => work(vertices, cut.points(&prepared.passes[pass], patch as usize)),
+                }
+            });
+            own.sum()
+        });
+        let works = works.collect();
+        Ok(Some(Few {
+            works,
+            vertices: all,
+            list,
+        }))
+    }
+}
+
+/// The box around nothing.
+const NOTHING: [Vec2; 2] = [Vec2::INFINITY, Vec2::NEG_INFINITY];
+
+/// The box around places; None where one is not known.
+fn bounds(mut places: impl Iterator<Item = Option<Vec2>>) -> Option<[Vec2; 2]> {
+    places.try_fold(NOTHING, |[low, high], at| {
+        at.map(|at| [low.min(at), high.max(at)])
+    })
+}
+
+/// The pixels around a frame within an area; one at least.
+fn around([low, high]: [Vec2; 2], within: Area) -> Area {
     let first = |at: f32, first: u32, length: u32| {
         let last = first + length.saturating_sub(1);
-        ((at - more).floor().max(0.0) as u32).clamp(first, last)
+        (at.floor().max(0.0) as u32).clamp(first, last)
     };
     let end = |at: f32, start: u32, first: u32, length: u32| {
-        ((at + more).ceil().max(0.0) as u32).clamp(start + 1, (first + length).max(start + 1))
+        (at.ceil().max(0.0) as u32).clamp(start + 1, (first + length).max(start + 1))
     };
     let (x, y) = (
         first(low.x, within.x, within.width),
@@ -279,14 +329,13 @@ mod tests {
                 y,
                 width,
                 height,
-            } = around([low.into(), high.into()], 2.0, WINDOW);
+            } = around([low.into(), high.into()], WINDOW);
             [x, y, width, height]
         };
-        assert_eq!(area([50.0, 40.0], [60.5, 45.0]), [48, 38, 15, 9]);
+        assert_eq!(area([48.0, 38.2], [62.5, 47.0]), [48, 38, 15, 9]);
         assert_eq!(area([-9e9, 0.0], [9e9, 1e30]), [10, 20, 100, 50]);
         assert_eq!(area([300.0, 300.0], [400.0, 400.0]), [109, 69, 1, 1]);
-        let nothing = [Vec2::INFINITY, Vec2::NEG_INFINITY];
-        let Area { width, height, .. } = around(nothing, 2.0, WINDOW);
+        let Area { width, height, .. } = around(NOTHING, WINDOW);
         assert_eq!([width, height], [1, 1]);
     }
 
@@ -297,9 +346,9 @@ mod tests {
             clip: Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::NEG_W, Vec4::Z),
             viewport: WINDOW,
         };
-        let ahead = lens.frame([Vec3::NEG_Z].into_iter()).expect("it is seen");
+        let ahead = lens.frame(&[Vec3::NEG_Z]).expect("it is seen");
         assert_eq!(ahead, [Vec2::new(60.0, 45.0); 2]);
-        assert!(lens.frame([Vec3::NEG_Z, Vec3::Z].into_iter()).is_none());
+        assert!(lens.frame(&[Vec3::NEG_Z, Vec3::Z]).is_none());
         let at = |x: f32| [Vec2::new(x, 45.0), Vec2::new(x + 5.0, 46.0)];
         assert!(meets(at(107.0), WINDOW) && meets(at(112.0), WINDOW));
         assert!(!meets(at(114.0), WINDOW) && !meets(at(0.0), WINDOW));

@@ -1,32 +1,37 @@
 //! How a frame draws one surface: its points, and its draws, once or with lines over them.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use hullform::Result;
 use hullform::ash::vk;
-use hullform::gpu::{Decided, Decides, Decision, Pipelines, Residence, View, ring};
+use hullform::gpu::{
+    Decided, Decides, Decision, DrawList, Filling, Pipelines, Residence, View, ring,
+};
 use hullform::host::Owned;
 use hullform::method::{Editable, Update};
 
 use super::Cost;
-use super::scene::is_chosen;
+use super::scene::{Batches, work_of};
 use crate::view::context::{Context, Drawn, Growth};
 
-/// Some of a list's batches.
-pub(super) struct Batches<'a> {
-    /// From which to which.
-    pub range: Range<usize>,
-    /// Which of these, where not all are.
-    pub chosen: Option<&'a Arc<[bool]>>,
-}
-
 impl Drawn {
-    /// The vertices of batches that are chosen.
-    pub(super) fn vertices_of(&self, chosen: &[bool]) -> u64 {
-        let batches = self.list.iter().flat_map(|list| list.batches());
-        let chosen = batches.zip(chosen).filter(|(_, chosen)| **chosen);
-        chosen.map(|(batch, _)| u64::from(batch.vertices())).sum()
+    /// What is drawn of it: all, or where a part of the picture is drawn what is seen there.
+    pub(super) fn drawn_list(&self, is_part: bool) -> Option<&DrawList> {
+        match is_part {
+            true => self.few.as_ref().map(|few| &few.list),
+            false => self.list.as_ref(),
+        }
+    }
+
+    /// The work that each batch is of what is drawn of it in a round.
+    pub(super) fn works(&self, is_part: bool) -> Option<Arc<[f64]>> {
+        match is_part {
+            true => self.few.as_ref().map(|few| few.works.clone()),
+            false => self
+                .list
+                .as_ref()
+                .map(|l| l.batches().map(work_of).collect()),
+        }
     }
 
     /// Whether the device decides about its patches.
@@ -52,7 +57,7 @@ impl Drawn {
                 retired.destroy(raw, memory);
             }
         }
-        self.list = None;
+        (self.list, self.few) = (None, None);
         Ok(())
     }
 
@@ -68,6 +73,35 @@ impl Drawn {
             self.surface.finish_upload(device.raw(), memory);
         }
         self.growth = Growth::Done;
+    }
+
+    /// How many control points are to be computed before it is drawn.
+    pub(super) fn uncached(&self) -> u32 {
+        let cached = self.list.as_ref().filter(|_| self.cache.is_some());
+        cached.map_or(0, |list| self.surface.uncached(list))
+    }
+
+    /// Records the computation of so many of these: how many they are.
+    ///
+    /// # Safety
+    /// As [`cmd_prepare`](Self::cmd_prepare).
+    pub(super) unsafe fn cmd_fill(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        context: &Context,
+        most: u32,
+    ) -> Result<u32> {
+        let (device, layout) = (context.device().raw(), context.layout());
+        let (Some(cache), Some(list)) = (&self.cache, &self.list) else {
+            return Ok(0);
+        };
+        let filling = Filling { list, most };
+        // SAFETY: this function's contract.
+        unsafe {
+            self.surface.cmd_upload(device, cmd);
+            self.surface
+                .cmd_cache_some(device, cmd, layout, cache, filling)
+        }
     }
 
     /// Records what comes before rendering: how many control points are computed.
@@ -120,14 +154,14 @@ impl Drawn {
         pipelines: &Arc<Owned<Pipelines>>,
         cost: &mut Cost,
     ) -> Result<()> {
-        let Some(list) = &self.list else {
+        let Some(list) = self.drawn_list(batches.is_part) else {
             return Ok(());
         };
         let (device, layout) = (context.device().raw(), context.layout());
-        let Batches { range, chosen } = batches;
-        let batches = list.round(round)?.enumerate().skip(range.start);
+        let Batches { range, works, .. } = batches;
+        let batches = list.round(round)?.zip(works.iter()).skip(range.start);
         let batches = batches.take(range.len());
-        for (_, batch) in batches.filter(|(number, _)| is_chosen(chosen, *number)) {
+        for (batch, _) in batches.filter(|(_, work)| **work > 0.0) {
             let first = batch.points() > 0 && batch.ring_batch() == 0;
             // SAFETY: this function's contract; the target's pass allows the barrier.
             unsafe {

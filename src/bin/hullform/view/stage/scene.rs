@@ -1,5 +1,6 @@
 //! A scene as it is drawn: in one frame, or in slices over several, so that what takes long leaves the window time in between. What it shows was decided when it began.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use hullform::Result;
@@ -7,8 +8,6 @@ use hullform::ash::vk;
 use hullform::gpu::{self, Batch, Decision, Pipelines, View, ring};
 use hullform::host::{OffscreenTarget, Owned, Slice};
 
-use super::amends::Amended;
-use super::drawn::Batches;
 use super::{Cost, Side, Stage, Staged, cmd_look, style, view};
 use crate::eye::Sphere;
 use crate::render;
@@ -37,6 +36,8 @@ pub struct Scene {
     steps: Vec<Step>,
     at: Cursor,
     end: Cursor,
+    /// Before anything is drawn, the points of caches that the next slice computes, where these are too many for one.
+    filling: Option<u32>,
 }
 
 /// With what views a surface is prepared.
@@ -65,14 +66,19 @@ enum What {
         part: usize,
         round: u32,
         pipelines: Arc<Owned<Pipelines>>,
-        /// Which of them, where not all are.
-        chosen: Option<Arc<[bool]>>,
+        /// The work that each of them is; none where nothing of it is drawn.
+        works: Arc<[f64]>,
     },
 }
 
-/// Whether a batch is drawn.
-pub(super) fn is_chosen(chosen: Option<&Arc<[bool]>>, batch: usize) -> bool {
-    chosen.is_none_or(|all| all.get(batch).copied().unwrap_or(true))
+/// Some of the batches of a surface.
+pub(super) struct Batches<'a> {
+    /// From which to which.
+    pub range: Range<usize>,
+    /// The work that each of all is.
+    pub works: &'a [f64],
+    /// Whether they are those of a part of the picture.
+    pub is_part: bool,
 }
 
 /// How far it is drawn: a step, and a batch of that.
@@ -102,11 +108,10 @@ impl Stage {
         &mut self,
         viewer: &Viewer,
         level: f32,
-        amended: Option<&Amended>,
+        part: Option<Area>,
         context: &Context,
     ) {
         let mut sides = Stage::sides(viewer);
-        let part = amended.map(|amended| amended.area);
         for side in &mut sides {
             side.scissor = part.map_or(side.scissor, |part| side.scissor.and(part));
         }
@@ -120,6 +125,7 @@ impl Stage {
             steps: Vec::new(),
             at: Cursor::default(),
             end: Cursor::default(),
+            filling: None,
             sides,
         };
         for (number, side) in scene.sides.iter().enumerate() {
@@ -137,11 +143,11 @@ impl Stage {
                 if self.mapped.contains(&(side.recipe, staged.number)) {
                     continue;
                 }
-                let chosen = amended.map(|amended| amended.batches[part][side.recipe].clone());
-                scene.cost.vertices += match &chosen {
-                    Some(chosen) => drawn.vertices_of(chosen),
-                    None => drawn.vertices,
+                let Some(works) = drawn.works(scene.part.is_some()) else {
+                    continue;
                 };
+                let few = drawn.few.as_ref().filter(|_| scene.part.is_some());
+                scene.cost.vertices += few.map_or(drawn.vertices, |few| few.vertices);
                 for (round, fill) in (0..).zip(Stage::fills(viewer)) {
                     let key = drawn.key(style(drawn, viewer, fill));
                     if let Some(pipelines) = context.ready_or_like(&key) {
@@ -149,7 +155,7 @@ impl Stage {
                             part,
                             round,
                             pipelines,
-                            chosen: chosen.clone(),
+                            works: works.clone(),
                         }));
                     }
                 }
@@ -183,13 +189,11 @@ impl Stage {
     }
 
     /// What the next frame draws of the scene: something, and no more than so much work if that can be helped.
-    pub fn slice(&mut self, most: f64) -> Result<Option<Sliced>> {
-        let Some(mut scene) = self.scene.take() else {
-            return Ok(None);
-        };
+    pub fn slice(&mut self, most: f64) -> Option<Sliced> {
+        let mut scene = self.scene.take()?;
         let sliced = scene.plan(self, most);
         self.scene = Some(scene);
-        sliced.map(Some)
+        Some(sliced)
     }
 
     /// Records what was asked for last; the scene as it was, where it is whole now.
@@ -237,8 +241,12 @@ impl Stage {
         context: &Context,
         scene: &mut Scene,
     ) -> Result<()> {
+        if let Some(points) = scene.filling {
+            // SAFETY: this function's contract.
+            return unsafe { self.cmd_fill(cmd, context, scene, points) };
+        }
         let device = context.device().raw();
-        let slice = scene.kind();
+        let (slice, is_part) = (scene.kind(), scene.part.is_some());
         // SAFETY: this function's contract; slices come in their order.
         unsafe {
             if slice.begins() {
@@ -269,11 +277,12 @@ impl Stage {
                         part,
                         round,
                         pipelines,
-                        chosen,
+                        works,
                     } => {
                         let batches = Batches {
                             range: batches,
-                            chosen: chosen.as_ref(),
+                            works,
+                            is_part,
                         };
                         let drawn = &self.parts[*part].sides[recipe];
                         let cost = &mut scene.cost;
@@ -290,6 +299,29 @@ impl Stage {
                     }
                 }
             }
+        }
+        Ok(())
+    }
+}
+
+impl Stage {
+    /// Computes so many points of caches.
+    ///
+    /// # Safety
+    /// As [`record`](Self::record).
+    unsafe fn cmd_fill(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        context: &Context,
+        scene: &mut Scene,
+        mut points: u32,
+    ) -> Result<()> {
+        for seen in &scene.views {
+            let drawn = &mut self.parts[seen.part].sides[seen.recipe];
+            // SAFETY: this function's contract.
+            let filled = unsafe { drawn.cmd_fill(cmd, context, points) }?;
+            scene.cost.points += u64::from(filled);
+            points -= filled.min(points);
         }
         Ok(())
     }
@@ -330,35 +362,38 @@ impl Staged {
 
 /// What a batch takes, in vertices.
 pub(super) fn work_of(batch: Batch<'_>) -> f64 {
-    f64::from(batch.vertices()) + POINT * f64::from(batch.points())
+    work(batch.vertices(), batch.points())
+}
+
+/// What so many vertices and points take.
+pub(super) fn work(vertices: u32, points: u32) -> f64 {
+    f64::from(vertices) + POINT * f64::from(points)
 }
 
 impl Scene {
     /// Decides what the next frame draws.
-    fn plan(&mut self, stage: &Stage, most: f64) -> Result<Sliced> {
-        let (mut work, mut end) = (0.0, self.at);
-        let most = self.part.map_or(most, |_| f64::INFINITY);
+    fn plan(&mut self, stage: &Stage, most: f64) -> Sliced {
+        let mut end = self.at;
+        let mut work = match self.at == Cursor::default() {
+            true => POINT * self.uncached(stage),
+            false => 0.0,
+        };
+        self.filling = (work > most).then_some((most / POINT) as u32);
+        if self.filling.is_some() {
+            (self.end, work) = (self.at, most);
+            let is_last = false;
+            return Sliced { work, is_last };
+        }
         'steps: while let Some(step) = self.steps.get(end.step) {
             let recipe = self.sides[step.side].recipe;
             match &step.what {
-                What::Surface {
-                    part,
-                    round,
-                    chosen,
-                    ..
-                } => {
-                    if let Some(list) = &stage.parts[*part].sides[recipe].list {
-                        for batch in list.round(*round)?.skip(end.batch) {
-                            let own = match is_chosen(chosen.as_ref(), end.batch) {
-                                true => work_of(batch),
-                                false => 0.0,
-                            };
-                            if work > 0.0 && work + own > most {
-                                break 'steps;
-                            }
-                            work += own;
-                            end.batch += 1;
+                What::Surface { works, .. } => {
+                    for own in works.iter().skip(end.batch) {
+                        if work > 0.0 && work + own > most {
+                            break 'steps;
                         }
+                        work += own;
+                        end.batch += 1;
                     }
                 }
                 What::Map => work += FLAT * stage.flat[recipe] as f64,
@@ -370,46 +405,46 @@ impl Scene {
             };
         }
         self.end = end;
-        Ok(Sliced {
+        Sliced {
             work,
             is_last: end.step == self.steps.len(),
-        })
+        }
+    }
+
+    /// The points of caches that are to be computed before anything is drawn.
+    fn uncached(&self, stage: &Stage) -> f64 {
+        let drawn = self
+            .views
+            .iter()
+            .map(|seen| &stage.parts[seen.part].sides[seen.recipe]);
+        drawn.map(|drawn| f64::from(drawn.uncached())).sum()
     }
 
     /// The work that all of it is.
-    pub fn work(&self, parts: &[Staged]) -> f64 {
+    pub fn work(&self) -> f64 {
         let steps = self.steps.iter().filter_map(|step| match &step.what {
-            What::Surface {
-                part,
-                round,
-                chosen,
-                ..
-            } => {
-                let drawn = &parts[*part].sides[self.sides[step.side].recipe];
-                let batches = drawn.list.as_ref()?.round(*round).ok()?.enumerate();
-                Some(batches.filter(|(number, _)| is_chosen(chosen.as_ref(), *number)))
-            }
+            What::Surface { works, .. } => Some(works.iter()),
             _ => None,
         });
-        steps.flatten().map(|(_, batch)| work_of(batch)).sum()
+        steps.flatten().sum()
     }
 
     /// Which slice of the picture comes next.
     fn kind(&self) -> Slice {
         let is_first = self.at == Cursor::default();
-        if self.part.is_some() {
-            return Slice::Part;
-        }
-        match (is_first, self.end.step == self.steps.len()) {
-            (true, true) => Slice::Whole,
-            (true, false) => Slice::First,
-            (false, false) => Slice::Between,
-            (false, true) => Slice::Last,
+        let is_last = self.end.step == self.steps.len();
+        match (is_first, is_last, self.part.is_some()) {
+            (true, true, false) => Slice::Whole,
+            (true, true, true) => Slice::Part,
+            (true, false, _) => Slice::First,
+            (false, false, _) => Slice::Between,
+            (false, true, false) => Slice::Last,
+            (false, true, true) => Slice::LastOfPart,
         }
     }
 
     /// Which batches of a step are drawn next; of what has none, the first stands for all.
-    fn batches_of(&self, step: usize) -> std::ops::Range<usize> {
+    fn batches_of(&self, step: usize) -> Range<usize> {
         let first = if step == self.at.step {
             self.at.batch
         } else {

@@ -1,4 +1,5 @@
-//! What small files with large neighbourhoods take: no more than the square of their size, and what is too large is refused at once.
+//! What small files with large neighbourhoods take: where faces have a hub in common about as much as their size, elsewhere no more than its square; and what is
+//! too large is refused at once.
 #![cfg(all(feature = "cli", target_os = "linux"))]
 
 use std::f64::consts::TAU;
@@ -27,6 +28,13 @@ fn quad_pole(n: u32) -> Shape {
     let positions = [[0.0, 0.0, 1.0]].into_iter().chain(circle(2 * n, 0.0));
     let faces = (0..n).map(|i| vec![0, 1 + 2 * i, 2 + 2 * i, 1 + (2 * i + 2) % (2 * n)]);
     (positions.collect(), faces.collect(), Vec::new())
+}
+
+/// A pole on a boundary.
+fn half_pole(n: u32) -> Shape {
+    let (positions, mut faces, creases) = quad_pole(n);
+    faces.pop();
+    (positions, faces, creases)
 }
 
 /// A pole whose spokes all differ.
@@ -103,27 +111,27 @@ fn seconds<T: Send>(work: impl FnOnce() -> T + Send) -> (T, f64) {
     (result, now() - started)
 }
 
-type Named = (&'static str, fn(u32) -> Shape);
+/// Name, shape, and whether it grows like the square of its size.
+type Named = (&'static str, fn(u32) -> Shape, bool);
 
-const SHAPES: [Named; 10] = [
-    ("pole", pole),
-    ("quad pole", quad_pole),
-    ("chain", chain),
-    ("n-gon", n_gon),
-    ("pillow", pillow),
-    ("prism", prism),
-    ("copies", copies),
-    ("two-sided", two_sided),
-    ("on one edge", on_one_edge),
-    ("fans at one vertex", fans_at_one_vertex),
+const SHAPES: [Named; 11] = [
+    ("pole", pole, false),
+    ("quad pole", quad_pole, false),
+    ("chain", chain, false),
+    ("n-gon", n_gon, false),
+    ("pillow", pillow, false),
+    ("prism", prism, false),
+    ("on one edge", on_one_edge, false),
+    ("fans at one vertex", fans_at_one_vertex, false),
+    ("copies", copies, false),
+    ("half pole", half_pole, true),
+    ("two-sided", two_sided, true),
 ];
 
 /// One test after the other: the process's time is measured.
 #[test]
-fn no_shape_takes_more_than_the_square_of_its_size() {
-    // Time varies by a third on machines with other work; a power of 2.5 would be 32 times as much.
-    const MOST: f64 = 22.0;
-    for (name, shape) in SHAPES {
+fn no_shape_takes_much_more_than_its_size() {
+    for (name, shape, is_square) in SHAPES {
         let take = |n: u32| {
             let prepare = || {
                 let model = Model::new(mesh(shape(n)));
@@ -133,10 +141,15 @@ fn no_shape_takes_more_than_the_square_of_its_size() {
             assert!(prepared.is_ok(), "{name} of {n}");
             took
         };
-        let [small, large] = [50, 200].map(|n| take(n).min(take(n)));
+        // Four times as much. Time varies by a third on machines with other work.
+        let (sizes, most) = match is_square {
+            true => ([50, 200], 22.0),
+            false => ([250, 1000], 6.5),
+        };
+        let [small, large] = sizes.map(|n| take(n).min(take(n)));
         println!("{name}: {small:.3} s, {large:.3} s");
         assert!(
-            large < MOST * small.max(0.004),
+            large < most * small.max(0.004),
             "{name}: {small} s, {large} s"
         );
     }
@@ -144,7 +157,7 @@ fn no_shape_takes_more_than_the_square_of_its_size() {
 }
 
 fn what_is_too_large_is_refused_at_once() {
-    for (name, shape) in SHAPES {
+    for (name, shape, _) in SHAPES.into_iter().filter(|shape| shape.2) {
         let model = Model::new(mesh(shape(20_000)));
         let ((), took) = seconds(|| {
             // The name of the default is that of the first that does what is asked for.

@@ -1,0 +1,196 @@
+//! Hubs of a mesh: what they become in refinement is computed once a pose, and given to the plans of all patches there.
+//!
+//! Where n faces meet in a vertex, the limit of each depends on all n, and so do the n parts of an n-gon: rings and sums of the square of what the file has
+//! (Brainerd et al. 2016, section 4.3). But it does so only by what the vertex in the middle becomes, level by level. With these as points of their own
+//! ([`Points`]), the ring of a patch beside a hub is what is near, and the same limit takes some fifty terms a point instead of thousands.
+
+use rayon::prelude::*;
+
+use crate::abi;
+use crate::error::Result;
+use crate::mesh::CreaseMethod;
+use crate::mesh::sharpness::is_infinite;
+use crate::mesh::topology::{Hub, Hubs, Topology};
+use crate::method::Points;
+use crate::method::points::Row;
+use crate::method::quadtree::subjects::Point;
+use crate::plan::{HubPlan, Middle, PlanOptions};
+use crate::subdivision::Mask;
+
+/// More faces around a vertex, or corners of a face, make a hub. Fewer have hardly more around them than what is near.
+const MANY: usize = 64;
+
+/// The hubs of a mesh. What is given of them is named by `HUB_POINT` and the numbers of points, all of one hub behind those of the one before.
+pub fn hubs(topology: &Topology, options: PlanOptions) -> Hubs {
+    // The tree ends at the last level; halves of edges, and centres of n-gons, are a level farther each.
+    let count = options.max_level.max(2) + 3 + 1;
+    let mut next = abi::HUB_POINT;
+    let mut hub = |at: u32| {
+        let first = next;
+        next += count;
+        Hub { at, first, count }
+    };
+    let vertices = 0..topology.vertex_count() as u32;
+    let crowded = vertices.filter(|&vertex| topology.vertex_faces(vertex).len() > MANY);
+    let crowded: Vec<u32> = crowded.collect();
+    let vertices = crowded.iter().copied();
+    let vertices = vertices.filter(|&vertex| is_hub(topology, vertex));
+    let vertices = vertices.map(&mut hub).collect();
+    let faces = 0..topology.face_count() as u32;
+    let faces = match topology.quads() {
+        Some(_) => Vec::new(),
+        None => faces
+            .filter(|&face| topology.face(face).len() > MANY)
+            .map(&mut hub)
+            .collect(),
+    };
+    Hubs::new(vertices, faces).with_dividing(dividing(topology, crowded))
+}
+
+/// The vertices, of those with very many faces, at which each face has the limit for itself: corners for ever, and where all faces have the same two infinite
+/// creases. Where such a crease has several faces, each has it for itself: for the same bits, these must run the same way, and its other end must be such a
+/// vertex as well, so that it depends on creases alone.
+fn dividing(topology: &Topology, mut among: Vec<u32>) -> Vec<u32> {
+    among.retain(|&vertex| is_corner(topology, vertex) || is_between_creases(topology, vertex));
+    loop {
+        let is_sound = |&vertex: &u32| {
+            infinite_edges(topology, vertex).all(|edge| {
+                let to = topology.edge(edge).other(vertex);
+                let divides = || among.binary_search(&to).is_ok() && is_one_way(topology, edge);
+                topology.edge_faces(edge).len() < 2 || divides()
+            })
+        };
+        let sound: Vec<u32> = among.iter().copied().filter(is_sound).collect();
+        if sound.len() == among.len() {
+            return sound;
+        }
+        among = sound;
+    }
+}
+
+fn infinite_edges(topology: &Topology, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+    let sharp = topology.sharp_edges(vertex);
+    sharp.filter(|&edge| is_infinite(topology.edge(edge).sharpness))
+}
+
+/// Whether a vertex stays where it is, whatever becomes of semi-sharp edges.
+fn is_corner(topology: &Topology, vertex: u32) -> bool {
+    let infinite = infinite_edges(topology, vertex).count();
+    let all = topology.sharp_edges(vertex).count();
+    let chaikin = topology.options().creasing == CreaseMethod::Chaikin;
+    (infinite > 2 || is_infinite(topology.vertex_sharpness(vertex))) && !(chaikin && all > infinite)
+}
+
+/// Whether all faces at a vertex are between its two infinite creases, and nothing else is sharp there. Sums over more than a few vertices are taken in another way.
+fn is_between_creases(topology: &Topology, vertex: u32) -> bool {
+    let edges = topology.vertex_edges(vertex);
+    edges.len() == 2
+        && infinite_edges(topology, vertex).count() == 2
+        && topology.vertex_sharpness(vertex) == 0.0
+        && topology
+            .vertex_faces(vertex)
+            .iter()
+            .all(|at| topology.face(at.face).len() <= 4)
+}
+
+/// Whether all faces on an edge run the same way along it.
+fn is_one_way(topology: &Topology, edge: u32) -> bool {
+    let from = topology.edge(edge).vertices[0];
+    let mut faces = topology.edge_faces(edge).iter();
+    faces.all(|&face| {
+        let corner = topology.corner_of(face, from);
+        topology.face_edges(face)[corner as usize] == edge
+    })
+}
+
+/// Whether faces on an edge have it each for itself.
+pub fn is_divided(topology: &Topology, edge: u32) -> bool {
+    let own = topology.edge(edge);
+    topology.divides(own.vertices[0])
+        && is_infinite(own.sharpness)
+        && topology.edge_faces(edge).len() > 1
+}
+
+/// Whether very many faces go all the way around a vertex, and have one tangent plane there. Under Chaikin's rule the sharpness of an edge there depends on all
+/// others.
+fn is_hub(topology: &Topology, vertex: u32) -> bool {
+    let around = topology.vertex_faces(vertex);
+    if is_infinite(topology.vertex_sharpness(vertex)) {
+        return false;
+    }
+    let mut sharp = topology.sharp_edges(vertex).peekable();
+    if sharp.peek().is_some() && topology.options().creasing == CreaseMethod::Chaikin {
+        return false;
+    }
+    let is_inside = |&edge: &u32| topology.edge_faces(edge).len() == 2;
+    !sharp.any(|edge| is_infinite(topology.edge(edge).sharpness))
+        && topology.vertex_edges(vertex).iter().all(is_inside)
+        && topology.vertex_edges(vertex).len() == around.len()
+        && topology.fan(around[0].face, around[0].corner).faces.len() == around.len()
+}
+
+/// The hub that a corner of a patch is.
+pub fn hub_of(topology: &Topology, point: Point) -> Option<Hub> {
+    match point {
+        Point::Vertex(vertex) => topology.hub_at(vertex),
+        Point::Centre(face) => topology.hub_of(face),
+        Point::Corner { .. } => None,
+    }
+}
+
+/// The number of the point that has the normal of a hub: behind all that are given.
+pub fn normal_of(hubs: &Hubs, hub: Hub) -> u32 {
+    hubs.given() as u32 + number_of(hub.first) / hub.count
+}
+
+/// The number of a point that is named among control vertices.
+pub fn number_of(named: u32) -> u32 {
+    named & !abi::HUB_POINT
+}
+
+/// Whether a number among control vertices names a point.
+pub fn is_point(named: u32) -> bool {
+    named & abi::HUB_POINT != 0
+}
+
+/// How the points of hubs are computed: what is given of all, then their normals. The topology is the mesh's own, without hubs.
+///
+/// # Errors
+/// As [`HubPlan::build`].
+pub fn points(topology: &Topology, hubs: &Hubs, options: PlanOptions) -> Result<Points> {
+    let mut points = Points::default();
+    if hubs.is_empty() {
+        return Ok(points);
+    }
+    let vertices = hubs.vertices().iter();
+    let vertices = vertices.map(|hub| (Middle::Vertex(hub.at), hub.count));
+    let faces = hubs.faces().iter();
+    let faces = faces.map(|hub| (Middle::Face(hub.at), hub.count));
+    let all: Vec<(Middle, u32)> = vertices.chain(faces).collect();
+    let plans: Vec<HubPlan> = all
+        .par_iter()
+        .map(|&(middle, count)| HubPlan::build(topology, middle, count - 1, options))
+        .collect::<Result<_>>()?;
+    points.begin(abi::POINTS_HUB, 0);
+    for plan in &plans {
+        for weights in &plan.given {
+            points.push(Row::Hub {
+                anchor: plan.vertices[0],
+                mask: &mask(plan, weights),
+            });
+        }
+    }
+    points.begin(abi::POINTS_LIMIT, hubs.given() as u32);
+    for plan in &plans {
+        let limit = plan.given.last().map(|weights| mask(plan, weights));
+        let [du, dv] = [0, 1].map(|i| mask(plan, &plan.tangents[i]));
+        points.push(Row::Limit([&limit.unwrap_or_default(), &du, &dv]));
+    }
+    Ok(points)
+}
+
+fn mask(plan: &HubPlan, weights: &[f64]) -> Mask {
+    let terms = plan.vertices.iter().zip(weights);
+    let terms = terms.filter(|term| *term.1 != 0.0);
+    terms.map(|(&vertex, &weight)| (vertex, weight)).collect()
+}

@@ -108,10 +108,12 @@ const uint USE_CUSP = 256u;
 const uint USE_INSIDE = 512u;
 // Use flag: limit and normal are points that are computed beforehand: the use's `rows` is the number of the limit, `root` that of the normal.
 const uint USE_HUB = 1024u;
+// Use flag: the plan of the edge has the face as in a mirror: the derivative along the edge is turned round.
+const uint USE_REFLECTED = 2048u;
 // Among the control vertices of patches with long rings: the number behind this flag is that of a `Point` of a `POINTS_HUB` step.
 const uint HUB_POINT = 2147483648u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-const uint USE_SIDE_SHIFT = 11u;
+const uint USE_SIDE_SHIFT = 12u;
 // Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
 const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.

@@ -151,8 +151,8 @@ impl Sketch {
     }
 }
 
-/// Around a vertex; with semi-sharp spokes.
-fn quads_around(creased: bool) -> ControlMesh {
+/// So many quads around a vertex, all or not, with creases: how sharp each spoke is.
+fn quads_around(count: u32, sharpness: impl Fn(usize) -> f32) -> ControlMesh {
     let mut sketch = Sketch::new();
     let middle = sketch.point([0.0, 0.0, 0.4]);
     let inner = sketch.circle(2 * MANY, 0.6, 0.2);
@@ -160,12 +160,12 @@ fn quads_around(creased: bool) -> ControlMesh {
     sketch.around(MANY, |i, j| {
         vec![middle, inner[2 * i], inner[2 * i + 1], inner[2 * j]]
     });
+    sketch.faces.truncate(count as usize);
     sketch.around(2 * MANY, |i, j| {
         vec![inner[i], outer[i], outer[j], inner[j]]
     });
-    let spokes = (0..MANY as usize).step_by(if creased { 3 } else { 1000 });
-    let creases = spokes.map(|i| (middle, inner[2 * i], 0.3 + 0.07 * i as f32));
-    let creases: Vec<_> = creases.skip(usize::from(!creased)).collect();
+    let spokes = (0..MANY as usize).map(|i| (middle, inner[2 * i], sharpness(i)));
+    let creases: Vec<_> = spokes.filter(|spoke| spoke.2 > 0.0).collect();
     sketch.mesh(&creases)
 }
 
@@ -239,18 +239,36 @@ fn pages(edge: bool) -> ControlMesh {
     sketch.mesh(&[])
 }
 
-/// A face that is there many times.
-fn copies() -> ControlMesh {
+/// A face that is there many times, perhaps in both directions.
+fn copies(both: bool) -> ControlMesh {
     let mut sketch = Sketch::new();
     let face = sketch.circle(4, 1.0, 0.0);
-    sketch.around(MANY, |_, _| face.clone());
+    let back: Vec<u32> = face.iter().rev().copied().collect();
+    sketch.around(MANY, |i, _| match both && i % 2 == 1 {
+        true => back.clone(),
+        false => face.clone(),
+    });
     sketch.mesh(&[])
 }
 
-fn hubs() -> [(&'static str, bool, ControlMesh); 11] {
+fn hubs() -> [(&'static str, bool, ControlMesh); 14] {
+    let semi_sharp = |i: usize| {
+        if i % 3 == 1 {
+            0.3 + 0.07 * i as f32
+        } else {
+            0.0
+        }
+    };
+    let dart = [0.0, 10.0];
     [
-        ("quads around a vertex", true, quads_around(false)),
-        ("creased spokes", true, quads_around(true)),
+        ("quads around a vertex", true, quads_around(MANY, |_| 0.0)),
+        ("creased spokes", true, quads_around(MANY, semi_sharp)),
+        (
+            "a dart",
+            true,
+            quads_around(MANY, |i| dart[usize::from(i == 9)]),
+        ),
+        ("half a pole", true, quads_around(MANY - 1, semi_sharp)),
         ("two n-gons", true, lids(false, false)),
         ("prism", true, lids(true, false)),
         ("sheet", true, lid_in_sheet()),
@@ -259,7 +277,8 @@ fn hubs() -> [(&'static str, bool, ControlMesh); 11] {
         ("corner of an n-gon", true, hub_at_corner()),
         ("pages", false, pages(true)),
         ("fans", false, pages(false)),
-        ("copies", false, copies()),
+        ("copies", false, copies(false)),
+        ("copies in both directions", false, copies(true)),
     ]
 }
 

@@ -422,6 +422,7 @@ Evaluated evaluate_place(Patch record, uint slot, vec2 uv) {
                                       scratch_row(row_places(first, corner, row + 4u), u),
                                       scratch_row(row_places(first, corner, row + 8u), u),
                                       scratch_row(row_places(first, corner, row + 12u), u));
+    if ((flags & USE_REFLECTED) != 0u) surface.du = -surface.du;
     surface = exchanged ? Surface(surface.position, surface.dv, surface.du) : turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;

@@ -22,12 +22,12 @@ pub(crate) struct HubPlan {
     pub vertices: Vec<u32>,
     /// The weights of what it becomes, level by level, then of its limit.
     pub given: Vec<Vec<f64>>,
-    /// Those of the limit's tangents.
-    pub tangents: [Vec<f64>; 2],
+    /// Those of the limit's tangents, and of those for where they cancel.
+    tangents: [Option<[Vec<f64>; 2]>; 2],
 }
 
 impl HubPlan {
-    /// Of a hub inside of a mesh with one tangent plane; its next `levels` levels. The topology has no hubs.
+    /// Of a hub with one tangent plane; its next `levels` levels. The topology has no hubs.
     ///
     /// # Errors
     /// As [`VertexPlan::build`].
@@ -52,8 +52,18 @@ impl HubPlan {
         Ok(HubPlan {
             vertices: ring.vertices,
             given: below.into_iter().chain([row(0)]).map(plain).collect(),
-            tangents: [plain(row(1)), plain(row(2))],
+            tangents: [1, 3].map(|first| {
+                let own = [first, first + 1];
+                (own[1] < limit.plan.stencils.len()).then(|| own.map(|n| plain(row(n))))
+            }),
         })
+    }
+
+    /// The weights of the limit's tangents; or, if there are others, of those for where they cancel.
+    pub fn tangents(&self, spare: bool) -> &[Vec<f64>; 2] {
+        let [own, other] = &self.tangents;
+        let own = own.as_ref().expect("a hub has a tangent plane");
+        other.as_ref().filter(|_| spare).unwrap_or(own)
     }
 }
 

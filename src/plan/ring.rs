@@ -101,11 +101,19 @@ impl Ring {
         Ring::least(corners.map(|at| Ring::unmirrored(topology, at.face, at.corner, 1)))
     }
 
-    /// The ring of an infinite crease between vertices that divide the faces there, as one of its faces has it: the edge runs as the face's vertices do. None where
-    /// there is no such corner.
+    /// The ring of an infinite crease between vertices that divide the faces there, as one of its faces has it. It begins where the edge does, and mirrored if the
+    /// face's vertices run the other way. None where there is no such corner.
     pub(crate) fn of_side(topology: &Topology, face: u32, corner: u32) -> Option<Ring> {
-        let is_corner = (corner as usize) < topology.face(face).len();
-        is_corner.then(|| Ring::unmirrored(topology, face, corner, 2))
+        let vertices = topology.face(face);
+        let &vertex = vertices.get(corner as usize)?;
+        let edge = topology.face_edges(face)[corner as usize];
+        let mirrored = topology.edge(edge).vertices[0] != vertex;
+        let start = Start {
+            face,
+            corner: (corner + u32::from(mirrored)) % vertices.len() as u32,
+            mirrored,
+        };
+        Some(Ring::around(topology, start, 2, EDGE_REACH))
     }
 
     /// The ring of a vertex that divides the faces there, as one of them has it. None where there is no such corner.

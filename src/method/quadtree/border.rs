@@ -279,7 +279,8 @@ impl Builder<'_> {
                     let ring = known.ring.as_deref().or(long.as_deref());
                     let ring = ring.expect("it is kept, or was just found");
                     let flags = flags ^ self.line_flags(part.face, corner, line, ring, known.plan);
-                    let flipped = 2 * (flags & abi::USE_FLIPPED);
+                    let reflected = flags & abi::USE_REFLECTED != 0;
+                    let flipped = 2 * u32::from(flags & abi::USE_FLIPPED != 0 && !reflected);
                     uses[number].flags = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
                     uses[number].ring = self.places(ring, &plain);
                     let found = self.plan(&mut uses[number], known.plan);
@@ -404,6 +405,9 @@ impl Builder<'_> {
     fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: u32) -> u32 {
         match line {
             Line::Edge(_) => {}
+            Line::Side { .. } if ring.mirrored => {
+                return abi::USE_CREASED | abi::USE_FLIPPED | abi::USE_REFLECTED;
+            }
             Line::Side { .. } => return abi::USE_CREASED,
             Line::Spoke { .. } => return 0,
         }

@@ -48,16 +48,15 @@ pub fn hubs(topology: &Topology, options: PlanOptions) -> Hubs {
 }
 
 /// The vertices, of those with very many faces, at which each face has the limit for itself: corners for ever, and where all faces have the same two infinite
-/// creases. Where such a crease has several faces, each has it for itself: for the same bits, these must run the same way, and its other end must be such a
-/// vertex as well, so that it depends on creases alone.
+/// creases. Where such a crease has several faces, each has it for itself: for the same bits its other end must be such a vertex as well, so that it depends on
+/// creases alone.
 fn dividing(topology: &Topology, mut among: Vec<u32>) -> Vec<u32> {
     among.retain(|&vertex| is_corner(topology, vertex) || is_between_creases(topology, vertex));
     loop {
         let is_sound = |&vertex: &u32| {
             infinite_edges(topology, vertex).all(|edge| {
                 let to = topology.edge(edge).other(vertex);
-                let divides = || among.binary_search(&to).is_ok() && is_one_way(topology, edge);
-                topology.edge_faces(edge).len() < 2 || divides()
+                topology.edge_faces(edge).len() < 2 || among.binary_search(&to).is_ok()
             })
         };
         let sound: Vec<u32> = among.iter().copied().filter(is_sound).collect();
@@ -93,16 +92,6 @@ fn is_between_creases(topology: &Topology, vertex: u32) -> bool {
             .all(|at| topology.face(at.face).len() <= 4)
 }
 
-/// Whether all faces on an edge run the same way along it.
-fn is_one_way(topology: &Topology, edge: u32) -> bool {
-    let from = topology.edge(edge).vertices[0];
-    let mut faces = topology.edge_faces(edge).iter();
-    faces.all(|&face| {
-        let corner = topology.corner_of(face, from);
-        topology.face_edges(face)[corner as usize] == edge
-    })
-}
-
 /// Whether faces on an edge have it each for itself.
 pub fn is_divided(topology: &Topology, edge: u32) -> bool {
     let own = topology.edge(edge);
@@ -111,21 +100,23 @@ pub fn is_divided(topology: &Topology, edge: u32) -> bool {
         && topology.edge_faces(edge).len() > 1
 }
 
-/// Whether very many faces go all the way around a vertex, and have one tangent plane there. Under Chaikin's rule the sharpness of an edge there depends on all
-/// others.
+/// Whether very many faces go all the way around a vertex, one infinite crease at most among them, or from boundary to boundary, and have one tangent plane there. Under Chaikin's rule the sharpness of an
+/// edge there depends on all others.
 fn is_hub(topology: &Topology, vertex: u32) -> bool {
-    let around = topology.vertex_faces(vertex);
+    let (around, edges) = (topology.vertex_faces(vertex), topology.vertex_edges(vertex));
     if is_infinite(topology.vertex_sharpness(vertex)) {
         return false;
     }
-    let mut sharp = topology.sharp_edges(vertex).peekable();
-    if sharp.peek().is_some() && topology.options().creasing == CreaseMethod::Chaikin {
-        return false;
-    }
-    let is_inside = |&edge: &u32| topology.edge_faces(edge).len() == 2;
-    !sharp.any(|edge| is_infinite(topology.edge(edge).sharpness))
-        && topology.vertex_edges(vertex).iter().all(is_inside)
-        && topology.vertex_edges(vertex).len() == around.len()
+    let boundary = edges
+        .iter()
+        .filter(|&&edge| topology.edge_faces(edge).len() == 1);
+    let boundary = boundary.count();
+    let infinite = infinite_edges(topology, vertex).count();
+    let chaikin = topology.options().creasing == CreaseMethod::Chaikin;
+    let is_sharp = topology.sharp_edges(vertex).count() > infinite;
+    matches!((boundary, infinite), (0, 0 | 1) | (2, 2))
+        && edges.len() == around.len() + boundary / 2
+        && !(chaikin && is_sharp)
         && topology.fan(around[0].face, around[0].corner).faces.len() == around.len()
 }
 
@@ -153,7 +144,7 @@ pub fn is_point(named: u32) -> bool {
     named & abi::HUB_POINT != 0
 }
 
-/// How the points of hubs are computed: what is given of all, then their normals. The topology is the mesh's own, without hubs.
+/// How the points of hubs are computed: what is given of all, then their normals, and those that stand in for them. The topology is the mesh's own, without hubs.
 ///
 /// # Errors
 /// As [`HubPlan::build`].
@@ -180,11 +171,15 @@ pub fn points(topology: &Topology, hubs: &Hubs, options: PlanOptions) -> Result<
             });
         }
     }
-    points.begin(abi::POINTS_LIMIT, hubs.given() as u32);
-    for plan in &plans {
-        let limit = plan.given.last().map(|weights| mask(plan, weights));
-        let [du, dv] = [0, 1].map(|i| mask(plan, &plan.tangents[i]));
-        points.push(Row::Limit([&limit.unwrap_or_default(), &du, &dv]));
+    for spare in [false, true] {
+        let kinds = [abi::POINTS_LIMIT, abi::POINTS_SPARE];
+        points.begin(kinds[usize::from(spare)], hubs.given() as u32);
+        for plan in &plans {
+            let limit = plan.given.last().map(|weights| mask(plan, weights));
+            let [du, dv] = plan.tangents(spare).each_ref();
+            let [du, dv] = [du, dv].map(|weights| mask(plan, weights));
+            points.push(Row::Limit([&limit.unwrap_or_default(), &du, &dv]));
+        }
     }
     Ok(points)
 }

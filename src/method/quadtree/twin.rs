@@ -122,6 +122,13 @@ fn irregular_surface(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> E
     }
     let side = flags >> abi::USE_SIDE_SHIFT;
     let surface = one_use.evaluate(given, root, uv, side);
+    let surface = match flags & abi::USE_REFLECTED {
+        0 => surface,
+        _ => Surface {
+            du: -surface.du,
+            ..surface
+        },
+    };
     let Surface { position, du, dv } = if number == 0 && mirrored {
         exchanged(surface)
     } else {

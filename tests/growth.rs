@@ -119,12 +119,11 @@ fn seconds<T: Send>(work: impl FnOnce() -> T + Send) -> (T, f64) {
 
 type Named = (&'static str, fn(u32) -> Shape);
 
-const SHAPES: [Named; 11] = [
+const SHAPES: [Named; 10] = [
     ("pole", pole),
     ("quad pole", quad_pole),
     ("chain", chain),
     ("n-gon", n_gon),
-    ("pillow", pillow),
     ("prism", prism),
     ("on one edge", on_one_edge),
     ("fans at one vertex", fans_at_one_vertex),
@@ -154,11 +153,11 @@ fn no_shape_takes_much_more_than_its_size() {
             "{name}: {small} s, {large} s"
         );
     }
-    let square = [("divided pole", divided_pole as fn(u32) -> Shape)];
+    let square: [Named; 2] = [("divided pole", divided_pole), ("pillow", pillow)];
     what_is_too_large_is_refused_at_once(square);
 }
 
-fn what_is_too_large_is_refused_at_once(square: [Named; 1]) {
+fn what_is_too_large_is_refused_at_once(square: [Named; 2]) {
     for (name, shape) in square {
         let model = Model::new(mesh(shape(20_000)));
         let ((), took) = seconds(|| {

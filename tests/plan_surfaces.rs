@@ -269,7 +269,7 @@ fn hubs() -> [(&'static str, bool, ControlMesh); 14] {
             quads_around(MANY, |i| dart[usize::from(i == 9)]),
         ),
         ("half a pole", true, quads_around(MANY - 1, semi_sharp)),
-        ("two n-gons", true, lids(false, false)),
+        ("two n-gons", false, lids(false, false)),
         ("prism", true, lids(true, false)),
         ("sheet", true, lid_in_sheet()),
         ("cone", true, lids(false, true)),

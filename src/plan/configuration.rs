@@ -210,8 +210,8 @@ impl Configuration {
             at += 1 + arity;
         }
         let records = self.words[at + 1 + self.words[at] as usize..].chunks_exact(RECORD);
-        let hubs = records.filter(|record| record[0] == record[1]);
-        hubs.last().map_or(vertices, |hub| hub[3] + hub[4])
+        let mut hubs = records.filter(|record| record[0] == record[1]);
+        hubs.next_back().map_or(vertices, |hub| hub[3] + hub[4])
     }
 
     /// The words, for storage.

@@ -40,7 +40,7 @@ pub fn hubs(topology: &Topology, options: PlanOptions) -> Hubs {
     let faces = match topology.quads() {
         Some(_) => Vec::new(),
         None => faces
-            .filter(|&face| topology.face(face).len() > MANY)
+            .filter(|&face| is_large(topology, face) && !is_doubled(topology, face))
             .map(&mut hub)
             .collect(),
     };
@@ -100,8 +100,8 @@ pub fn is_divided(topology: &Topology, edge: u32) -> bool {
         && topology.edge_faces(edge).len() > 1
 }
 
-/// Whether very many faces go all the way around a vertex, one infinite crease at most among them, or from boundary to boundary, and have one tangent plane there. Under Chaikin's rule the sharpness of an
-/// edge there depends on all others.
+/// Whether very many faces go all the way around a vertex, one infinite crease at most between them, or from boundary to boundary, and have one tangent plane
+/// there. Under Chaikin's rule the sharpness of an edge there depends on all others.
 fn is_hub(topology: &Topology, vertex: u32) -> bool {
     let (around, edges) = (topology.vertex_faces(vertex), topology.vertex_edges(vertex));
     if is_infinite(topology.vertex_sharpness(vertex)) {
@@ -118,6 +118,25 @@ fn is_hub(topology: &Topology, vertex: u32) -> bool {
         && edges.len() == around.len() + boundary / 2
         && !(chaikin && is_sharp)
         && topology.fan(around[0].face, around[0].corner).faces.len() == around.len()
+}
+
+fn is_large(topology: &Topology, face: u32) -> bool {
+    topology.face(face).len() > MANY
+}
+
+/// Whether a face lies back to back with another large one, along two edges in a row at least. Where two sheets fold into one, derivatives across their rim are sums
+/// that cancel, which they do to the last bit only if they are over the same vertices.
+fn is_doubled(topology: &Topology, face: u32) -> bool {
+    let beyond = |&edge: &u32| match *topology.edge_faces(edge) {
+        [a, b] => Some(if a == face { b } else { a }),
+        _ => None,
+    };
+    let edges = topology.face_edges(face);
+    let next = edges.iter().cycle().skip(1);
+    edges.iter().zip(next).any(|(edge, next)| {
+        let other = beyond(edge);
+        other == beyond(next) && other.is_some_and(|other| is_large(topology, other))
+    })
 }
 
 /// The hub that a corner of a patch is.

@@ -58,6 +58,8 @@ const uint POINTS_NEARBY = 5u;
 const uint POINTS_CUSP = 6u;
 // Kind of a step: positions are sums of weighted positions of earlier points.
 const uint POINTS_REFINE = 7u;
+// Kind of a step: positions are sums of weighted control vertices relative to the first of them, whose position stands in place of a normal.
+const uint POINTS_HUB = 8u;
 // Row flag: the ring of faces is open, its first and last vertex belong to one face each.
 const uint ROW_OPEN = 2147483648u;
 // Row flag: tangents that are nearly parallel give no normal.
@@ -106,8 +108,14 @@ const uint USE_SPARE = 128u;
 const uint USE_CUSP = 256u;
 // Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
 const uint USE_INSIDE = 512u;
+// Use flag: limit and normal are points that are computed beforehand: the use's `rows` is the number of the limit, `root` that of the normal.
+const uint USE_HUB = 1024u;
+// Use flag: the plan of the edge has the face as in a mirror: the derivative along the edge is turned round.
+const uint USE_REFLECTED = 2048u;
+// Among the control vertices of patches with long rings: the number behind this flag is that of a `Point` of a `POINTS_HUB` step.
+const uint HUB_POINT = 2147483648u;
 // Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-const uint USE_SIDE_SHIFT = 10u;
+const uint USE_SIDE_SHIFT = 12u;
 // Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
 const uint PATCH_TURNED_CORNER = 128u;
 // Node kind: has four children.
@@ -324,7 +332,7 @@ struct Use {
     // has the number of a weight for each vertex of the ring, counted in units of four bits, and the width of a number << 30.
     uint rows;
     // The node that walks begin with. Of a corner with a plan, the number, among the stencils of the inside, of the first of two tangents near it;
-    // or `NO_TANGENTS`.
+    // or `NO_TANGENTS`. With `USE_HUB` both are numbers of points.
     uint root;
     // Where in the list of control vertices the places of the plan's ring in the patch's stand, the corner's first. Of the inside, whose ring is the patch's, they
     // stand behind that, in the order in which stencils are summed.
@@ -368,7 +376,7 @@ struct Decision {
 struct Point {
     // Position in local units.
     vec3 position;
-    // Unit normal, or zero.
+    // Unit normal, or zero; of `POINTS_HUB`, what the position is relative to.
     vec3 normal;
 };
 

@@ -42,6 +42,23 @@ void refine(PointRow row, uint number) {
     points[number].position = sum;
 }
 
+// A sum relative to the vertex of its first term, by what rounding takes away from each step: so it errs by what its distance from there has for rounding,
+// wherever that is and however many terms there are.
+void hub(PointRow row, uint number) {
+    vec3 origin = positions[terms[row.first].source];
+    vec3 sum = vec3(0.0);
+    vec3 lost = vec3(0.0);
+    for (uint i = 0u; i < row.count; ++i) {
+        PointTerm term = terms[row.first + i];
+        precise vec3 rest = term.position * (positions[term.source] - origin) - lost;
+        precise vec3 next = sum + rest;
+        precise vec3 more = (next - sum) - rest;
+        sum = next;
+        lost = more;
+    }
+    points[number] = Point(sum, origin);
+}
+
 // The normal of two tangents over the control vertices, relative to that of the last term, which has the greatest weight: so little is lost where
 // they are small beside the model. Zero where rounding may have made it.
 vec3 tangent_normal(PointRow row) {
@@ -134,6 +151,7 @@ void main() {
     switch (point_step.kind) {
     case POINTS_BLEND: blend(row, number); return;
     case POINTS_REFINE: refine(row, number); return;
+    case POINTS_HUB: hub(row, number); return;
     case POINTS_LIMIT: limit(row, number); return;
     case POINTS_RING: ring(row, number); return;
     case POINTS_SPARE: spare(row, number); return;

@@ -73,7 +73,7 @@ structs! {
         /// has the number of a weight for each vertex of the ring, counted in units of four bits, and the width of a number << 30.
         rows: u32,
         /// The node that walks begin with. Of a corner with a plan, the number, among the stencils of the inside, of the first of two tangents near it;
-        /// or `NO_TANGENTS`.
+        /// or `NO_TANGENTS`. With `USE_HUB` both are numbers of points.
         root: u32,
         /// Where in the list of control vertices the places of the plan's ring in the patch's stand, the corner's first. Of the inside, whose ring is the patch's, they
         /// stand behind that, in the order in which stencils are summed.
@@ -117,7 +117,7 @@ structs! {
     Point {
         /// Position in local units.
         position: [f32; 3],
-        /// Unit normal, or zero.
+        /// Unit normal, or zero; of `POINTS_HUB`, what the position is relative to.
         normal: [f32; 3],
     }
 

@@ -65,18 +65,50 @@ uint place_at(uint list, uint i) {
     return first_place(control_at(list + i / PLACES_A_WORD) >> BITS_A_PLACE * (i % PLACES_A_WORD));
 }
 
-// A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
+#ifdef LONG_RINGS
+#ifdef STAGE_COMPUTE
+// A point that is computed beforehand. In a pose with a cache they come first there, two vectors each.
+Point hub_point(uint number) { return Point(cached[2u * number], cached[2u * number + 1u]); }
+#else
+layout(set = SET_POSE, binding = BINDING_POINTS, scalar) readonly buffer HubTable { Point points[]; };
+Point hub_point(uint number) { return points[number]; }
+#endif
+
+// From `origin` to a point of a hub, which is relative to one of the hub's vertices.
+vec3 hub_spoke(uint named, vec3 origin) {
+    Point hub = hub_point(named & ~HUB_POINT);
+    precise vec3 spoke = hub.position + (hub.normal - origin);
+    return spoke;
+}
+#endif
+
+// A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then. What is given of
+// hubs stands behind what the vertex shader hands on.
 vec3 ring_point(Patch record, uint place) {
+#ifdef LONG_RINGS
+    uint named = place < CONTROL_INVOCATIONS ? 0u : control_at(record.controls + place);
+    if ((named & HUB_POINT) != 0u) return hub_spoke(named, vec3(0.0));
+#endif
 #ifdef STAGE_COMPUTE
     return control_vertex(control_at(record.controls + place));
 #else
     vec3 piped = in_point[min(place, CONTROL_INVOCATIONS - 1u)];
 #ifdef LONG_RINGS
-    return place < CONTROL_INVOCATIONS ? piped : control_vertex(control_at(record.controls + place));
+    return place < CONTROL_INVOCATIONS ? piped : control_vertex(named);
 #else
     return piped;
 #endif
 #endif
+}
+
+// From `origin` to it.
+vec3 ring_spoke(Patch record, uint place, vec3 origin) {
+#ifdef LONG_RINGS
+    uint named = place < CONTROL_INVOCATIONS ? 0u : control_at(record.controls + place);
+    if ((named & HUB_POINT) != 0u) return hub_spoke(named, origin);
+#endif
+    precise vec3 spoke = ring_point(record, place) - origin;
+    return spoke;
 }
 
 // Adds `term` to a sum of many, and keeps what rounding takes away (Kahan 1965).
@@ -147,11 +179,11 @@ vec3 stencil_point(Patch record, Ring ring, uint number) {
     for (uint i = 0u; i < ring.size; i += 2u) {
         uint places = control_at(ring.places + i / PLACES_A_WORD) >> BITS_A_PLACE * (i % PLACES_A_WORD);
         uint place = first_place(places);
-        precise vec3 term = weight_at(row, ring.inside ? place : i) * (ring_point(record, place) - origin);
+        precise vec3 term = weight_at(row, ring.inside ? place : i) * ring_spoke(record, place, origin);
         add_term(sum, lost, term, ring.size);
         if (i + 1u < ring.size) {
             place = first_place(places >> BITS_A_PLACE);
-            term = weight_at(row, ring.inside ? place : i + 1u) * (ring_point(record, place) - origin);
+            term = weight_at(row, ring.inside ? place : i + 1u) * ring_spoke(record, place, origin);
             add_term(sum, lost, term, ring.size);
         }
     }
@@ -179,7 +211,7 @@ Limit ring_limit(Patch record, Ring ring, uvec3 numbers) {
     precise vec2 spread = vec2(0.0);
     precise vec2 total = vec2(0.0);
     for (uint i = 0u; i < ring.size; ++i) {
-        precise vec3 spoke = ring_point(record, ring.inside ? i : place_at(ring.places, i)) - origin;
+        precise vec3 spoke = ring_spoke(record, ring.inside ? i : place_at(ring.places, i), origin);
         vec2 pair = vec2(weights[at_u + i], weights[at_v + i]);
         precise vec3 along_u = pair.x * spoke;
         precise vec3 along_v = pair.y * spoke;
@@ -200,10 +232,16 @@ Limit ring_limit(Patch record, Ring ring, uvec3 numbers) {
 Point corner_point(Patch record, uint number) {
     uint flags = uses[use_of(record, number)].flags;
     uint near_pair = uses[use_of(record, number)].root;
-    bool has_near = near_pair != NO_TANGENTS;
+#ifdef LONG_RINGS
+    // All of it is there; the loop below has nothing to do.
+    bool is_hub = (flags & USE_HUB) != 0u;
+#else
+    const bool is_hub = false;
+#endif
+    bool has_near = near_pair != NO_TANGENTS && !is_hub;
     bool is_cusp = (flags & USE_CUSP) != 0u;
     uint limit_pair = 1u + 2u * (flags >> USE_SIDE_SHIFT);
-    uint pairs = has_near || (flags & USE_SPARE) != 0u ? 2u : 1u;
+    uint pairs = is_hub ? 0u : has_near || (flags & USE_SPARE) != 0u ? 2u : 1u;
     Limit limit;
     vec3 limit_normal = vec3(0.0);
     vec3 normal = vec3(0.0);
@@ -228,6 +266,13 @@ Point corner_point(Patch record, uint number) {
             normal = limit_normal;
         }
     }
+#ifdef LONG_RINGS
+    if (is_hub) {
+        uint used = use_of(record, number);
+        vec3 origin = ring_point(record, place_at(uses[used].ring, 0u));
+        return Point(hub_spoke(uses[used].rows, origin), hub_point(uses[used].root).normal);
+    }
+#endif
     return Point(limit.position, normal);
 }
 
@@ -385,6 +430,7 @@ Evaluated evaluate_place(Patch record, uint slot, vec2 uv) {
                                       scratch_row(row_places(first, corner, row + 4u), u),
                                       scratch_row(row_places(first, corner, row + 8u), u),
                                       scratch_row(row_places(first, corner, row + 12u), u));
+    if ((flags & USE_REFLECTED) != 0u) surface.du = -surface.du;
     surface = exchanged ? Surface(surface.position, surface.dv, surface.du) : turned(surface, flags >> USE_TURN_SHIFT & 3u);
     // Half of the edge is the whole patch.
     float scale = (flags & (USE_FIRST_HALF | USE_SECOND_HALF)) != 0u ? 0.5 : 1.0;

@@ -55,6 +55,8 @@ constants! {
     POINTS_CUSP = 6;
     /// Kind of a step: positions are sums of weighted positions of earlier points.
     POINTS_REFINE = 7;
+    /// Kind of a step: positions are sums of weighted control vertices relative to the first of them, whose position stands in place of a normal.
+    POINTS_HUB = 8;
     /// Row flag: the ring of faces is open, its first and last vertex belong to one face each.
     ROW_OPEN = 0x8000_0000;
     /// Row flag: tangents that are nearly parallel give no normal.
@@ -104,8 +106,14 @@ constants! {
     USE_CUSP = 256;
     /// Use flag: the edge has no plan; it is evaluated with the points of the inside, as on its other side.
     USE_INSIDE = 512;
+    /// Use flag: limit and normal are points that are computed beforehand: the use's `rows` is the number of the limit, `root` that of the normal.
+    USE_HUB = 1024;
+    /// Use flag: the plan of the edge has the face as in a mirror: the derivative along the edge is turned round.
+    USE_REFLECTED = 2048;
+    /// Among the control vertices of patches with long rings: the number behind this flag is that of a `Point` of a `POINTS_HUB` step.
+    HUB_POINT = 0x8000_0000;
     /// Use flag: which side of an infinite crease an edge is seen from, or which pair of tangents.
-    USE_SIDE_SHIFT = 10;
+    USE_SIDE_SHIFT = 12;
     /// Patch flag, shifted by the corner's number: of a plain patch, sums at the corner go along v first.
     PATCH_TURNED_CORNER = 128;
 

@@ -5,6 +5,7 @@
 //! become infinitely sharp, and so do non-manifold vertices other than those on a plain non-manifold crease.
 
 mod connect;
+mod hubs;
 mod manifold;
 mod rejoin;
 mod retag;
@@ -21,6 +22,7 @@ use crate::mesh::sharpness::{decayed_around_vertex, is_infinite, is_sharp};
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, Scheme, SchemeOptions};
 
 use connect::Lists;
+pub(crate) use hubs::{Hub, Hubs};
 pub(crate) use rejoin::{GONE, Rejoined};
 pub(crate) use retag::Retagged;
 
@@ -64,6 +66,7 @@ pub struct Topology {
     vertex_edges: Lists<u32>,
     vertex_sharpness: Vec<f32>,
     holes: Vec<bool>,
+    hubs: Hubs,
     options: SchemeOptions,
 }
 
@@ -385,6 +388,10 @@ impl Topology {
             words.extend(self.faces.iter().map(|face| face.len() as u32));
         }
         words.extend_from_slice(self.faces.vertices());
+        for hubs in self.hubs.lists() {
+            words.push(hubs.len() as u32);
+            words.extend(hubs.iter().flat_map(|hub| [hub.at, hub.first, hub.count]));
+        }
         let sharp = |(number, sharpness): (u32, &f32)| [number, sharpness.to_bits()];
         let vertices = (0..).zip(&self.vertex_sharpness);
         let vertices = vertices.filter(|vertex| is_sharp(*vertex.1));

@@ -14,7 +14,7 @@ const LEVELS: usize = abi::HIGHEST_LEVEL as usize + 1;
 /// The points of a cache, those of lower plan levels first, and what it takes to compute and find them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CachedPoints {
-    /// How many points the levels up to each have.
+    /// How many points the levels up to each have, behind what is computed beforehand ([`Prepared::points`]): two places a point.
     pub ends: [u32; LEVELS],
     /// The products of a weight and a vertex that these take.
     pub sums: [u64; LEVELS],

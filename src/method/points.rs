@@ -48,6 +48,13 @@ pub(super) enum Row<'a> {
         /// Whether there is no face between the last and the first.
         open: bool,
     },
+    /// Position from control vertices, relative to one of them.
+    Hub {
+        /// Which.
+        anchor: u32,
+        /// The sum, whose weights have the sum 1.
+        mask: &'a Mask,
+    },
     /// Normal from those of other points; or that nearby.
     Normals(&'a Mask),
 }
@@ -71,6 +78,12 @@ impl Points {
             Row::Blend(mask) | Row::Normals(mask) => self
                 .terms
                 .extend(mask.iter().map(|&(v, w)| term(v, w, 0.0, 0.0))),
+            Row::Hub { anchor, mask } => {
+                self.terms.push(term(anchor, 0.0, 0.0, 0.0));
+                let beside = mask.iter().filter(|term| term.0 != anchor);
+                let beside = beside.map(|&(v, w)| term(v, w, 0.0, 0.0));
+                self.terms.extend(beside);
+            }
             Row::Limit(masks) => self.terms.extend(joined(masks)),
             Row::Firm(masks) => {
                 self.terms.extend(joined(masks));
@@ -162,6 +175,7 @@ impl Points {
                     ..before
                 };
             }
+            abi::POINTS_HUB => return hub(terms, vertices),
             abi::POINTS_LIMIT => {
                 let firm = row.count & abi::ROW_FIRM != 0;
                 return Point {
@@ -188,6 +202,24 @@ impl Points {
             normal: normal.to_array(),
             ..before
         }
+    }
+}
+
+/// A sum relative to the vertex of its first term, by what rounding takes away from each step (Kahan 1965): so it errs by what its distance from there has for
+/// rounding, wherever that is and however many terms there are.
+fn hub(terms: &[PointTerm], vertices: &[Vec3]) -> Point {
+    let vertex = |term: &PointTerm| vertices[term.source as usize];
+    let origin = terms.first().map_or(Vec3::ZERO, vertex);
+    let (mut sum, mut lost) = (Vec3::ZERO, Vec3::ZERO);
+    for term in terms {
+        let rest = term.position * (vertex(term) - origin) - lost;
+        let next = sum + rest;
+        lost = (next - sum) - rest;
+        sum = next;
+    }
+    Point {
+        position: sum.to_array(),
+        normal: origin.to_array(),
     }
 }
 

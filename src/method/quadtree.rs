@@ -7,6 +7,8 @@ mod bounded;
 mod cached;
 mod configurations;
 mod corner;
+mod hubs;
+mod in_ring;
 mod irregular;
 mod places;
 mod plain;
@@ -15,6 +17,7 @@ mod planner;
 #[cfg(feature = "vulkan")]
 mod recached;
 mod run;
+mod sides;
 mod store;
 mod subjects;
 mod surroundings;
@@ -27,6 +30,7 @@ use glam::Vec3;
 
 use crate::abi;
 use crate::error::Result;
+use crate::mesh::topology::Hubs;
 use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
 use crate::method::patches::{self, Part};
@@ -111,11 +115,13 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     // Passes without patches are left out.
     let Prepared {
         passes,
+        points,
         plans,
         cached,
         ..
     } = prepared;
     Ok(Prepared {
+        points,
         plans,
         cached,
         ..Prepared::of(passes)
@@ -127,6 +133,7 @@ fn editable(
     options: MethodOptions,
     database: &Database,
 ) -> Result<(Prepared, Box<dyn Edits>)> {
+    bounded::check_without_hubs(model)?;
     let (prepared, planner) = planned(model, options, database, true)?;
     Ok((prepared, Box::new(planner)))
 }
@@ -173,7 +180,14 @@ fn planned(
     };
     reserve(&mut passes[0], regular, 16);
     reserve(&mut passes[1], parts.len() - regular, RING);
-    let mut planner = Planner::new(options, keeps);
+    // What is edited has rings that tell all.
+    let hubs = match keeps {
+        true => Hubs::default(),
+        false => hubs::hubs(model.topology(), options),
+    };
+    let points = hubs::points(model.topology(), &hubs, options)?;
+    let hubbed = (!hubs.is_empty()).then(|| model.topology().clone().with_hubs(hubs));
+    let mut planner = Planner::new(options, keeps, hubbed);
     let faces: Vec<u32> = (0..model.topology().face_count() as u32).collect();
     let wanted = Wanted {
         faces: &faces,
@@ -193,6 +207,7 @@ fn planned(
     plans.build_seconds = started.elapsed().as_secs_f64();
     let prepared = Prepared {
         passes,
+        points,
         plans: Some(plans),
         cached: Some(cached::cached_points),
         #[cfg(feature = "vulkan")]
@@ -213,7 +228,7 @@ fn passes(options: PlanOptions) -> Vec<Pass> {
         cached: Some("quadtree_cached"),
         cell: Some(twin::cell),
         tangents: Some(twin::irregular_tangents),
-        hull: Some(twin::ring_size),
+        hull: Some(twin::hull_size),
         ..pass(shader, abi::CONTROL_INVOCATIONS, twin::irregular, options)
     });
     std::iter::once(regular).chain(irregular).collect()

@@ -7,12 +7,13 @@ use rustc_hash::FxHashMap;
 use crate::error::Result;
 use crate::mesh::topology::Topology;
 use crate::plan::base::{Bases, UNUSED};
-use crate::plan::configuration::{Configuration, Ring};
+use crate::plan::configuration::Configuration;
 use crate::plan::growth::{Leaf, quarter};
 use crate::plan::level::{Level, Steps};
 use crate::plan::nearby;
 use crate::plan::options::PlanOptions;
 use crate::plan::required::{require, require_stretch};
+use crate::plan::ring::Ring;
 use crate::plan::rows::Rows;
 use crate::plan::span::Span;
 use crate::plan::stencil_rows::StencilRows;
@@ -125,6 +126,9 @@ fn shared_edges(topology: &Topology, configuration: &Configuration) -> Vec<u32> 
 /// The weights of a corner's limit: from the vertex alone, so that all faces around have the same.
 fn limit_row(base: &Level<'_>, corner: u32, steps: &Steps) -> Vec<f64> {
     let vertex = base.topology().face(0)[corner as usize];
+    if let Some(hub) = base.topology().hub_at(vertex) {
+        return base.rows.row(hub.limit() as usize).into_owned();
+    }
     let ring = Ring::of_vertex(base.topology(), vertex).expect("the face has the vertex");
     let limit = steps.limit(ring.configuration);
     let mask: Mask = ring

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use crate::plan::configuration::{Configuration, Ring};
+use crate::plan::configuration::Configuration;
 use crate::plan::level::{Level, Steps};
 use crate::plan::options::PlanOptions;
 use crate::plan::quarter::{Placed, Quarter};
+use crate::plan::ring::Ring;
 use crate::plan::rows::Rows;
 use crate::plan::tree::{Node, Tree};
 use crate::subdivision::{BsplinePatch, ControlPoint};

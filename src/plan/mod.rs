@@ -1,11 +1,13 @@
 //! Subdivision plans (Brainerd et al. 2016, sections 4 and 7.2): what a face needs to know about its limit, apart from positions.
 
+mod around;
 mod base;
 mod builder;
 mod configuration;
 pub mod database;
 mod edge;
 mod growth;
+mod hub;
 mod level;
 mod lists;
 mod nearby;
@@ -14,6 +16,7 @@ mod packed_rows;
 mod packing;
 mod quarter;
 mod required;
+mod ring;
 mod row_pool;
 mod rows;
 mod smooth;
@@ -27,12 +30,14 @@ mod vertex;
 mod walk;
 
 pub use builder::Plan;
-pub use configuration::{Configuration, Ring};
+pub use configuration::Configuration;
 pub use database::Database;
 pub use edge::{EdgeKind, EdgePlan};
+pub(crate) use hub::{HubPlan, Middle};
 pub use options::PlanOptions;
 pub use packed_rows::{PackedRows, Row, RowsView};
 pub use packing::{PackedPlans, Plans};
+pub use ring::Ring;
 pub(crate) use smooth::{SmoothQuads, SmoothRing, SmoothStart};
 pub use stencils::Stencils;
 pub use strip::{Crease, Stretch, Strip};

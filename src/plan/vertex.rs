@@ -69,17 +69,7 @@ impl VertexPlan {
             VertexKind::Centre => configuration.arity(),
         })?;
         let whole = Level::whole(configuration, steps);
-        let (mut level, mut corners) = match kind {
-            VertexKind::Control => {
-                let around = whole.topology().vertex_faces(0);
-                let corners: Vec<(u32, u32)> =
-                    around.iter().map(|at| (at.face, at.corner)).collect();
-                (whole.clone(), corners)
-            }
-            // Corner 2 of the n-gon's first part; all its parts agree.
-            VertexKind::Centre => (whole.refined(&[(0, 0)]), vec![(0, 2)]),
-        };
-        corners.sort_unstable();
+        let (mut level, mut corners) = VertexPlan::beginning(&whole, kind);
         let own = corners.clone();
         loop {
             let sectors = sectors(level.topology(), &corners);
@@ -131,6 +121,25 @@ impl VertexPlan {
     }
 }
 
+impl VertexPlan {
+    /// The first level that has the vertex, and the corners there that stand for all around it.
+    pub(super) fn beginning<'a>(
+        whole: &Level<'a>,
+        kind: VertexKind,
+    ) -> (Level<'a>, Vec<(u32, u32)>) {
+        match kind {
+            VertexKind::Control => {
+                let around = whole.topology().vertex_faces(0).iter();
+                let mut corners: Vec<(u32, u32)> = around.map(|at| (at.face, at.corner)).collect();
+                corners.sort_unstable();
+                (whole.clone(), corners)
+            }
+            // Corner 2 of the n-gon's first part; all its parts agree.
+            VertexKind::Centre => (whole.refined(&[(0, 0)]), vec![(0, 2)]),
+        }
+    }
+}
+
 /// The corners that share a sector between infinite creases, by their places: all that is known of the limit is the same for them.
 fn sectors(topology: &Topology, corners: &[(u32, u32)]) -> Vec<Vec<usize>> {
     let places = corners.iter().zip(0..);
@@ -163,7 +172,7 @@ fn push_tangents(rows: &mut Rows, limit: &LimitStencil, level: &Sums) {
 }
 
 /// The next level around the vertex: the children at it, in the order of their parents, and their corners there.
-fn refined<'a>(
+pub(super) fn refined<'a>(
     level: &Level<'a>,
     kind: VertexKind,
     corners: &[(u32, u32)],

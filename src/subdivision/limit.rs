@@ -41,6 +41,14 @@ pub(super) enum Family {
 /// The Catmull-Clark limit at `corner` of `face`, or None while a semi-sharp feature at the vertex or a face that is no quad asks for
 /// refinement, and where there is no such corner. [`vertex_limit`](crate::subdivision::vertex_limit) does the same for any scheme.
 pub fn limit_stencil(topology: &Topology, face: u32, corner: u32) -> Option<LimitStencil> {
+    let vertex = topology.face(face).get(corner as usize);
+    if let Some(hub) = vertex.and_then(|&vertex| topology.hub_at(vertex)) {
+        return Some(LimitStencil {
+            position: Mask::from_slice(&[(hub.limit(), 1.0)]),
+            du: Mask::new(),
+            dv: Mask::new(),
+        });
+    }
     family_stencil(topology, face, corner, Family::Quads)
 }
 

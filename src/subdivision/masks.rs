@@ -62,6 +62,9 @@ impl Blend for Mask {
 
 /// Adds `scale` times the mean of a face's vertices.
 pub(super) fn add_face(topology: &Topology, face: u32, scale: f64, mask: &mut Mask) {
+    if let Some(mean) = topology.mean_of(face) {
+        return mask.push((mean, scale));
+    }
     let vertices = topology.face(face);
     mask.extend(
         vertices
@@ -151,6 +154,9 @@ pub(super) fn add_smooth_edge(topology: &Topology, edge: u32, scale: f64, mask: 
 
 /// The mask of a vertex point.
 pub fn vertex_point(topology: &Topology, vertex: u32) -> Mask {
+    if let Some(hub) = topology.hub_at(vertex) {
+        return Mask::from_slice(&[(hub.first, 1.0)]);
+    }
     vertex_point_with(topology, vertex, add_smooth_vertex)
 }
 

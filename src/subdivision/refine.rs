@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use crate::mesh::CreaseMethod;
 use crate::mesh::places::Places;
 use crate::mesh::sharpness::{decayed, decayed_around_vertex, is_sharp};
-use crate::mesh::topology::{FaceCorner, Topology};
+use crate::mesh::topology::{FaceCorner, Hub, Hubs, Topology};
 use crate::subdivision::masks::{Mask, edge_point, face_point, vertex_point};
 
 /// A refined topology, and how its vertices come from the parent's.
@@ -228,8 +228,34 @@ impl Step<'_> {
         self.numbers[place]
     }
 
+    /// What is given of the hubs that are still there. It is numbered behind all else.
+    fn hubs(&mut self) -> Hubs {
+        let parent = self.parent;
+        let mut below = |origin: Origin, hub: &Hub| {
+            let at = self.known(origin);
+            if at == UNKNOWN {
+                return None;
+            }
+            let first = self.origins.len() as u32;
+            for given in hub.below() {
+                self.number(Origin::Vertex(given));
+            }
+            let count = hub.below().len() as u32;
+            Some(Hub { at, first, count })
+        };
+        let hubs = parent.hubs();
+        let vertices = hubs.vertices().iter();
+        let mut found: Vec<Hub> = vertices
+            .filter_map(|hub| below(Origin::Vertex(hub.at), hub))
+            .collect();
+        let faces = hubs.faces().iter();
+        found.extend(faces.filter_map(|hub| below(Origin::Face(hub.at), hub)));
+        Hubs::new(found, Vec::new())
+    }
+
     /// Connects the faces that were numbered.
-    fn finish(&self, faces: &[[u32; 4]], cells: usize) -> Refinement {
+    fn finish(mut self, faces: &[[u32; 4]], cells: usize) -> Refinement {
+        let hubs = self.hubs();
         let origins = self.origins.iter();
         let topology = Topology::connect(
             faces.iter().map(|f| &f[..]),
@@ -241,7 +267,7 @@ impl Step<'_> {
             |a, b| self.edge(a, b),
         );
         Refinement {
-            topology,
+            topology: topology.with_hubs(hubs),
             masks: origins.map(|&origin| self.mask(origin)).collect(),
             cells: cells as u32,
         }

@@ -42,7 +42,7 @@ fn assert_same_bits(what: &str, cached: &Frame, ring: &Frame) {
     }
 }
 
-/// Random meshes with creases, corners, boundaries and n-gons; rings that are too long for the vertex shader; a model.
+/// Random meshes with creases, corners, boundaries and n-gons; rings that are too long for the vertex shader, and a hub; a model.
 fn models() -> Vec<(String, Model)> {
     let mut runner = TestRunner::deterministic();
     let random = (0..12).filter_map(|number| {
@@ -53,7 +53,8 @@ fn models() -> Vec<(String, Model)> {
         let mesh = recipe.mesh().with_scheme(Scheme::CatmullClark).ok()?;
         Some((format!("random {number}"), Model::new(mesh)))
     });
-    let built_in = ["hull", "ngons", "pole-64"].map(|name| (name.into(), shapes::built_in(name)));
+    let built_in =
+        ["hull", "ngons", "pole-64", "pole-66"].map(|name| (name.into(), shapes::built_in(name)));
     let shared = common::model("bigguy").map(|mesh| ("bigguy".into(), Model::new(mesh)));
     random.chain(built_in).chain(shared).collect()
 }

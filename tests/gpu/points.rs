@@ -8,14 +8,15 @@ use hullform::method::METHODS;
 use crate::common::gpu::{Gpu, SPACINGS, bits, capturing, cut, prepare};
 use crate::shapes;
 
-/// Every method with points, on built-in shapes cut into triangles: a mesh that is moved on the device is drawn like one that was made where it is now.
+/// Every method with points, on built-in shapes cut into triangles, and on a hub: a mesh that is moved on the device is drawn like one that was made where it is now.
 #[test]
 fn device_and_host_compute_points_with_the_same_bits() {
     let Some(gpu) = Gpu::open() else { return };
     let workarounds = &gpu.device.info().workarounds;
     let at = cut(3.0, SPACINGS[0]);
     let mut compared = 0;
-    for (name, model) in shapes::triangular() {
+    let hub = ("builtin pole-66".to_owned(), shapes::built_in("pole-66"));
+    for (name, model) in shapes::triangular().into_iter().chain([hub]) {
         // The shared shapes would show nothing more.
         let small = name.starts_with("builtin") && model.mesh().vertex_count() < 500;
         for method in METHODS

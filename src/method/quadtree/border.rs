@@ -9,15 +9,17 @@ use std::rc::Rc;
 
 use bytemuck::{AnyBitPattern, NoUninit};
 use rustc_hash::FxHashMap;
-use smallvec::{SmallVec, smallvec};
+use smallvec::smallvec;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::mesh::topology::Topology;
-use crate::method::patches::Part;
+use crate::mesh::topology::{Hub, Topology};
+use crate::method::quadtree::hubs::{self, hub_of};
+use crate::method::quadtree::in_ring::{InRing, List, Plain};
 use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, vertex_rows};
+use crate::method::quadtree::sides::{lines, points};
 use crate::method::quadtree::store::Store;
 use crate::method::quadtree::subjects::{Known, LONG, Line, LongRings, Point, Shared, Subject};
 use crate::method::regular::is_turned_corner;
@@ -72,41 +74,6 @@ pub struct Found {
     pub places: Vec<u32>,
 }
 
-/// A part's edges: which line it is, whether the part has a half of it, and the corner of the face that the line begins with.
-fn lines(topology: &Topology, part: Part, turn: u32) -> [(Line, u32, u32); 4] {
-    let edges = topology.face_edges(part.face);
-    let n = edges.len() as u32;
-    let edge = |corner: u32| Line::Edge(edges[corner as usize]);
-    if n == 4 {
-        return [0, 1, 2, 3].map(|i| (edge((turn + i) % 4), 0, (turn + i) % 4));
-    }
-    let (face, corner) = (part.face, part.corner);
-    let before = (corner + n - 1) % n;
-    [
-        (edge(corner), abi::USE_FIRST_HALF, corner),
-        (Line::Spoke { face, corner }, 0, 0),
-        (
-            Line::Spoke {
-                face,
-                corner: before,
-            },
-            abi::USE_FLIPPED,
-            0,
-        ),
-        (edge(before), abi::USE_SECOND_HALF, before),
-    ]
-}
-
-/// A part's corners; None for the middles of edges.
-fn points(topology: &Topology, part: Part, turn: u32) -> [Option<Point>; 4] {
-    let vertices = topology.face(part.face);
-    if vertices.len() == 4 {
-        return [0, 1, 2, 3].map(|i| Some(Point::Vertex(vertices[((turn + i) % 4) as usize])));
-    }
-    let own = Point::Vertex(vertices[part.corner as usize]);
-    [Some(own), None, Some(Point::Centre(part.face)), None]
-}
-
 impl Borders {
     /// Finds the borders of some irregular patches of a pass, whose plans are in its store, and packs the plans of edges and vertices that they lack.
     pub fn find(
@@ -138,14 +105,17 @@ impl Borders {
             let points = points(topology, record.part, record.turn(topology));
             points.into_iter().flatten()
         });
-        let vertices = vertices
-            .filter(|&point| !matches!(point, Point::Vertex(vertex) if is_plain(smooth, vertex)));
+        let needs_none = |point: Point| {
+            matches!(point, Point::Vertex(vertex) if is_plain(smooth, vertex))
+                || hub_of(topology, point).is_some()
+        };
+        let vertices = vertices.filter(|&point| !needs_none(point));
         let vertices = Shared::new(topology, smooth, vertices, store, options, database)?;
         let mut builder = Builder {
             topology,
             smooth,
             agreed,
-            in_ring: vec![u16::MAX; topology.vertex_count()],
+            in_ring: InRing::new(topology),
             stars: FxHashMap::default(),
             long_rings: LongRings::default(),
             lines: &lines,
@@ -187,7 +157,7 @@ struct Builder<'a> {
     lines: &'a Shared,
     vertices: &'a Shared,
     /// By vertex, where it stands in the ring of the patch at hand, if it does.
-    in_ring: Vec<u16>,
+    in_ring: InRing,
     /// The rings of points that have none of their own.
     stars: FxHashMap<usize, Rc<Ring>>,
     long_rings: LongRings,
@@ -208,38 +178,6 @@ fn numbered<T: NoUninit + AnyBitPattern, const N: usize>(
         records.push(record);
         records.len() as u32 - 1
     })
-}
-
-/// The plain vertices of a patch as they are met, as places in its ring.
-struct Plain<'a> {
-    /// Where in the patch's ring the vertices of the mesh stand that are in it.
-    in_ring: &'a [u16],
-    /// The plain vertices, as places.
-    places: &'a mut List,
-    /// Their numbers by place, once they are met.
-    numbers: List,
-}
-
-/// Places in a ring, or the words of such a list.
-type List = SmallVec<[u32; 32]>;
-
-impl Plain<'_> {
-    fn place(&self, vertex: u32) -> u32 {
-        let place = self.in_ring[vertex as usize];
-        assert_ne!(place, u16::MAX, "what a patch shares is in its ring");
-        place.into()
-    }
-
-    /// The number, among the plain points, of a vertex of the mesh.
-    fn point(&mut self, vertex: u32) -> u32 {
-        let place = self.place(vertex);
-        let number = &mut self.numbers[place as usize];
-        if *number == u32::MAX {
-            *number = self.places.len() as u32;
-            self.places.push(place);
-        }
-        *number
-    }
 }
 
 /// The flags of a corner.
@@ -317,7 +255,7 @@ impl Builder<'_> {
         let mut places = List::new();
         let mut in_ring = std::mem::take(&mut self.in_ring);
         for (place, &vertex) in (0..).zip(patch.vertices) {
-            in_ring[vertex as usize] = place;
+            in_ring.set(vertex, place);
         }
         let mut plain = Plain {
             in_ring: &in_ring,
@@ -341,7 +279,8 @@ impl Builder<'_> {
                     let ring = known.ring.as_deref().or(long.as_deref());
                     let ring = ring.expect("it is kept, or was just found");
                     let flags = flags ^ self.line_flags(part.face, corner, line, ring, known.plan);
-                    let flipped = 2 * (flags & abi::USE_FLIPPED);
+                    let reflected = flags & abi::USE_REFLECTED != 0;
+                    let flipped = 2 * u32::from(flags & abi::USE_FLIPPED != 0 && !reflected);
                     uses[number].flags = flags | ((edge + flipped) % 4) << abi::USE_TURN_SHIFT;
                     uses[number].ring = self.places(ring, &plain);
                     let found = self.plan(&mut uses[number], known.plan);
@@ -366,6 +305,12 @@ impl Builder<'_> {
             };
             uses[number].ring = self.list(patch.vertices.len(), &[own]);
             let Some(point) = point else { continue };
+            if let Some(hub) = hub_of(topology, point) {
+                uses[number] = self.hub(hub, point, own, &plain);
+                // Position and normal.
+                counts[number] = [2; LEVELS];
+                continue;
+            }
             match self.vertices.get(topology, point) {
                 Some(known) => {
                     let star = known.ring.is_none().then(|| self.star(point));
@@ -375,9 +320,10 @@ impl Builder<'_> {
                     let (sides, planes) = self.store.entry(known.plan).vertex_sides();
                     let side = match point {
                         Point::Vertex(_) => sides[local.expect("the face has the vertex")],
-                        Point::Centre(_) => sides[0],
+                        Point::Centre(_) | Point::Corner { .. } => sides[0],
                     };
-                    uses[number].flags = side_flags(side, planes > 1);
+                    let creased = planes > 1 || matches!(point, Point::Corner { .. });
+                    uses[number].flags = side_flags(side, creased);
                     uses[number].ring = self.places(ring, &plain);
                     self.plan(&mut uses[number], known.plan);
                     uses[number].root = nearby[patch.corner(corner) as usize];
@@ -395,7 +341,7 @@ impl Builder<'_> {
             }
         }
         for &vertex in patch.vertices {
-            in_ring[vertex as usize] = u16::MAX;
+            in_ring.set(vertex, u16::MAX);
         }
         self.in_ring = in_ring;
         let plain_count = places.len() as u32;
@@ -408,6 +354,21 @@ impl Builder<'_> {
             plain_count,
             ends: numbered(&mut borders.known_ends, &mut borders.ends, ends),
         })
+    }
+
+    /// A corner at a hub, which stands at place `own` if it is a vertex: it is relative to that, or to the limit.
+    fn hub(&mut self, hub: Hub, point: Point, own: u32, plain: &Plain<'_>) -> abi::Use {
+        let origin = match point {
+            Point::Vertex(_) | Point::Corner { .. } => own,
+            Point::Centre(_) => plain.place(hub.limit()),
+        };
+        abi::Use {
+            size: 1,
+            rows: hubs::number_of(hub.limit()),
+            root: hubs::normal_of(self.topology.hubs(), hub),
+            ring: self.list(plain.numbers.len(), &[origin]),
+            flags: abi::USE_LIMIT | abi::USE_HUB,
+        }
     }
 
     /// The ring of a point that has none of its own.
@@ -442,7 +403,14 @@ impl Builder<'_> {
 
     /// Which side of the line the face is on, and whether it runs the other way.
     fn line_flags(&self, face: u32, corner: u32, line: Line, ring: &Ring, plan: u32) -> u32 {
-        let Line::Edge(_) = line else { return 0 };
+        match line {
+            Line::Edge(_) => {}
+            Line::Side { .. } if ring.mirrored => {
+                return abi::USE_CREASED | abi::USE_FLIPPED | abi::USE_REFLECTED;
+            }
+            Line::Side { .. } => return abi::USE_CREASED,
+            Line::Spoke { .. } => return 0,
+        }
         let sides = self.store.entry(plan).edge_sides();
         let local = |&side: &u32| ring.faces[side as usize] == face;
         let side = sides.iter().position(local).unwrap_or(0) as u32;

@@ -123,7 +123,9 @@ fn place(
     });
     let mut jobs: Vec<Vec<[u32; 2]>> = vec![Vec::new(); prepared.passes.len()];
     let mut places = vec![0; owned.len()];
-    let mut next = 0;
+    // Behind the points that are computed beforehand, two vectors each.
+    let mut next = 2 * prepared.points.count;
+    made.ends.fill(next);
     for number in order {
         let Owned {
             pass,
@@ -365,6 +367,7 @@ impl<'a> Patch<'a> {
             rows, flags, root, ..
         } = self.border.used(number);
         let own = match root {
+            _ if flags & abi::USE_HUB != 0 => abi::NO_TANGENTS,
             abi::NO_TANGENTS => root,
             _ => self.number as u32,
         };

@@ -6,14 +6,18 @@
 use glam::Vec3;
 
 use crate::abi;
-use crate::method::quadtree::twin::{Use, compensated_sum};
-use crate::method::surface::{Tangents, UNIT, reach};
+use crate::method::quadtree::twin::{Use, compensated_sum, spoke};
+use crate::method::surface::{Controls, Tangents, UNIT, reach};
 use crate::plan::Row;
 
 /// Sums over a ring. Compensated, they err by some units of rounding of the absolute sum; the ring's own positions by one each.
-fn tangents(ring: &[Vec3], [first, second]: [Row<'_>; 2]) -> Tangents {
-    let origin = ring[0];
-    let spokes = || ring.iter().map(|&point| point - origin);
+fn tangents(
+    given: &Controls,
+    ring: &[u32],
+    origin: Vec3,
+    [first, second]: [Row<'_>; 2],
+) -> Tangents {
+    let spokes = || ring.iter().map(|&vertex| spoke(given, vertex, origin));
     let one = |row: Row<'_>| {
         let weighted = || {
             spokes()
@@ -38,11 +42,11 @@ fn tangents(ring: &[Vec3], [first, second]: [Row<'_>; 2]) -> Tangents {
 
 impl Use<'_> {
     /// The normal at a corner of the patch.
-    pub(super) fn vertex_normal(&self, vertices: &[Vec3], flags: u32) -> Vec3 {
+    pub(super) fn vertex_normal(&self, given: &Controls, flags: u32) -> Vec3 {
         let nearby = match self.border.used(self.number).root {
             abi::NO_TANGENTS => None,
             number => {
-                let normal = self.of(0).tangents(vertices, number).normal();
+                let normal = self.of(0).tangents(given, number).normal();
                 // The plan's tangents go the other way round there.
                 let mirrored = self.border.is_mirrored();
                 Some(if mirrored { -normal } else { normal })
@@ -52,11 +56,11 @@ impl Use<'_> {
             return nearby.unwrap_or(Vec3::ZERO);
         }
         let pair = 1 + 2 * (flags >> abi::USE_SIDE_SHIFT);
-        let tangents = self.tangents(vertices, pair);
+        let tangents = self.tangents(given, pair);
         let limit = tangents.normal();
         match nearby {
             None if limit == Vec3::ZERO && flags & abi::USE_SPARE != 0 => {
-                self.tangents(vertices, pair + 2).normal()
+                self.tangents(given, pair + 2).normal()
             }
             None => limit,
             Some(nearby) => {
@@ -76,10 +80,12 @@ impl Use<'_> {
     }
 
     /// The pair of tangents whose first is stencil `number` of the use's plan.
-    fn tangents(&self, vertices: &[Vec3], number: u32) -> Tangents {
-        let ring = self.ring(vertices);
+    fn tangents(&self, given: &Controls, number: u32) -> Tangents {
+        let ring: Vec<u32> = self.vertices().collect();
         tangents(
+            given,
             &ring,
+            self.origin(given),
             [number, number + 1].map(|number| self.stencil(number)),
         )
     }

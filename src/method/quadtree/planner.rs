@@ -3,6 +3,8 @@
 //! A patch keeps its slot, which is its number in its pass, as long as its face is drawn with the same shaders. What leaves a slot leaves it vacant, for whoever
 //! comes next. Plans and borders only ever grow ([`Planned`]); numbers of control vertices that nobody uses any more are taken again.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -19,7 +21,7 @@ use crate::method::quadtree::irregular::{Irregulars, NONE, Record, order, push_r
 use crate::method::quadtree::places;
 use crate::method::quadtree::planned::Planned;
 use crate::method::quadtree::run::Run;
-use crate::method::quadtree::surroundings::{Found, Surroundings, found};
+use crate::method::quadtree::surroundings::{Found, Surroundings, found as found_at};
 use crate::method::{Pass, PassChange};
 use crate::plan::{Database, PlanOptions, SmoothQuads};
 
@@ -46,6 +48,8 @@ struct Place {
 pub struct Planner {
     options: PlanOptions,
     planned: [Planned; 2],
+    /// The mesh's topology where it has hubs, with these.
+    hubbed: Option<Arc<Topology>>,
     /// By face, see [`Irregulars::of_faces`].
     of_faces: Vec<u32>,
     /// By edge, see [`Given::agreed`].
@@ -131,9 +135,10 @@ const VACANT: abi::Patch = abi::Patch {
 
 impl Planner {
     /// One that keeps what edits need, or that gives it all to the passes in the end.
-    pub fn new(options: PlanOptions, keeps: bool) -> Planner {
+    pub fn new(options: PlanOptions, keeps: bool, hubbed: Option<Topology>) -> Planner {
         Planner {
             options,
+            hubbed: hubbed.map(Arc::new),
             planned: Default::default(),
             of_faces: Vec::new(),
             agreed: Vec::new(),
@@ -214,7 +219,8 @@ impl Planner {
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let topology = model.topology();
+        let hubbed = self.hubbed.clone();
+        let topology = hubbed.as_deref().unwrap_or(model.topology());
         let smooth = SmoothQuads::new(topology);
         self.of_faces.resize(topology.face_count(), NONE);
         self.agreed.resize(topology.edge_count(), false);
@@ -233,7 +239,8 @@ impl Planner {
                 true => bounded::some(topology, rest, AT_A_TIME),
                 false => AT_A_TIME.min(rest.len()),
             });
-            let found = parts.par_iter().map(|&part| found(model, &smooth, part));
+            let found = parts.par_iter();
+            let found = found.map(|&part| found_at(model, topology, &smooth, part));
             found.collect_into_vec(&mut all);
             for (&part, found) in parts.iter().zip(all.drain(..)) {
                 self.place(passes, topology, part, found, &mut runs, log);
@@ -244,7 +251,7 @@ impl Planner {
             self.plan_run(
                 number,
                 passes,
-                model,
+                topology,
                 &smooth,
                 wanted.faces,
                 run,
@@ -316,14 +323,14 @@ impl Planner {
         &mut self,
         number: usize,
         passes: &mut [Pass],
-        model: &Model,
+        topology: &Topology,
         smooth: &SmoothQuads<'_>,
         faces: &[u32],
         run: Run,
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let (topology, pass_number) = (model.topology(), SHORT + number);
+        let pass_number = SHORT + number;
         let Run {
             mut slots,
             configurations,

@@ -18,6 +18,8 @@ use crate::plan::{Database, PlanOptions, Ring, SmoothQuads};
 pub enum Line {
     /// An edge of the mesh.
     Edge(u32),
+    /// An edge as a face has it for itself, from a corner on, see `hubs.rs`.
+    Side { face: u32, corner: u32 },
     /// From the middle of an n-gon's edge to its centre.
     Spoke { face: u32, corner: u32 },
 }
@@ -27,6 +29,11 @@ pub enum Line {
 pub enum Point {
     Vertex(u32),
     Centre(u32),
+    /// A vertex as a face has it for itself, see `hubs.rs`.
+    Corner {
+        face: u32,
+        corner: u32,
+    },
 }
 
 /// Something that has a plan of its own, and shares it with what looks alike.
@@ -43,6 +50,7 @@ impl Subject for Line {
     fn ring(self, topology: &Topology) -> Ring {
         match self {
             Line::Edge(edge) => Ring::of_edge(topology, edge),
+            Line::Side { face, corner } => Ring::of_side(topology, face, corner),
             Line::Spoke { face, corner } => Ring::from_corner(topology, face, corner),
         }
         .expect("lines are the topology's own")
@@ -50,7 +58,7 @@ impl Subject for Line {
 
     fn kind(self) -> Kind {
         match self {
-            Line::Edge(_) => Kind::Edge,
+            Line::Edge(_) | Line::Side { .. } => Kind::Edge,
             Line::Spoke { .. } => Kind::Spoke,
         }
     }
@@ -60,6 +68,10 @@ impl Subject for Line {
             Line::Edge(edge) => edge as usize,
             Line::Spoke { face, corner } => {
                 topology.edge_count() + topology.side(face, corner) as usize
+            }
+            Line::Side { face, corner } => {
+                let spokes = topology.shared_faces().vertices().len();
+                topology.edge_count() + spokes + topology.side(face, corner) as usize
             }
         }
     }
@@ -74,13 +86,14 @@ impl Subject for Point {
         match self {
             Point::Vertex(vertex) => Ring::of_vertex(topology, vertex),
             Point::Centre(face) => Ring::from_corner(topology, face, 0),
+            Point::Corner { face, corner } => Ring::of_corner(topology, face, corner),
         }
         .expect("points are the topology's own")
     }
 
     fn kind(self) -> Kind {
         match self {
-            Point::Vertex(_) => Kind::Vertex,
+            Point::Vertex(_) | Point::Corner { .. } => Kind::Vertex,
             Point::Centre(_) => Kind::Centre,
         }
     }
@@ -89,6 +102,10 @@ impl Subject for Point {
         match self {
             Point::Vertex(vertex) => vertex as usize,
             Point::Centre(face) => topology.vertex_count() + face as usize,
+            Point::Corner { face, corner } => {
+                let others = topology.vertex_count() + topology.face_count();
+                others + topology.side(face, corner) as usize
+            }
         }
     }
 

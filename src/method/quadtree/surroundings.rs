@@ -21,9 +21,8 @@ pub enum Surroundings {
     Irregular(Box<Ring>),
 }
 
-/// What there is at a part.
-pub fn found(model: &Model, smooth: &SmoothQuads<'_>, part: Part) -> Found {
-    let topology = model.topology();
+/// What there is at a part. The topology is the model's, perhaps with hubs.
+pub fn found(model: &Model, topology: &Topology, smooth: &SmoothQuads<'_>, part: Part) -> Found {
     let surroundings = surroundings(topology, smooth, part);
     let quad = topology.face(part.face).len() == 4;
     let turn = match &surroundings {

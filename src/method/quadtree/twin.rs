@@ -4,9 +4,11 @@
 //! share: that gives all of them the same bits. Twin of `glsl/method/quadtree.glsl` and `glsl/method/quadtree_regular.glsl`.
 
 use glam::{Vec2, Vec3};
+use smallvec::SmallVec;
 
 use crate::abi;
 use crate::method::quadtree::NODE_KINDS;
+use crate::method::quadtree::hubs;
 use crate::method::quadtree::places::place_at;
 use crate::method::quadtree::view::{self, Border};
 use crate::method::regular::{self, Place, exchanged, place};
@@ -116,14 +118,17 @@ fn irregular_surface(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> E
         },
     };
     if flags & abi::USE_LIMIT != 0 {
-        let vertices = &given.vertices;
-        return Evaluated::Corner(SurfacePoint {
-            position: one_use.point(vertices, 0) + one_use.origin(vertices),
-            normal: one_use.vertex_normal(vertices, flags),
-        });
+        return Evaluated::Corner(one_use.limit(given, flags));
     }
     let side = flags >> abi::USE_SIDE_SHIFT;
-    let surface = one_use.evaluate(&given.vertices, root, uv, side);
+    let surface = one_use.evaluate(given, root, uv, side);
+    let surface = match flags & abi::USE_REFLECTED {
+        0 => surface,
+        _ => Surface {
+            du: -surface.du,
+            ..surface
+        },
+    };
     let Surface { position, du, dv } = if number == 0 && mirrored {
         exchanged(surface)
     } else {
@@ -172,9 +177,29 @@ pub(super) fn cell(pass: &Pass, patch: usize, uv: Vec2) -> Option<Cell> {
     })
 }
 
-/// How many vertices the ring of a patch has.
-pub(super) fn ring_size(pass: &Pass, patch: usize) -> u32 {
-    Border::of(pass, patch).used(0).size
+/// How many vertices of the ring of a patch bound it; none where some of what is in it is computed from others.
+pub(super) fn hull_size(pass: &Pass, patch: usize) -> u32 {
+    let size = Border::of(pass, patch).used(0).size;
+    let first = pass.patches[patch].controls;
+    let last = pass.controls[(first + size - 1) as usize];
+    if hubs::is_point(last) { 0 } else { size }
+}
+
+/// Where a vertex of a ring is, or a point that is computed beforehand.
+fn position(given: &Controls, named: u32) -> Vec3 {
+    match hubs::is_point(named) {
+        true => spoke(given, named, Vec3::ZERO),
+        false => given.vertices[named as usize],
+    }
+}
+
+/// From `origin` to it.
+pub(super) fn spoke(given: &Controls, named: u32, origin: Vec3) -> Vec3 {
+    if !hubs::is_point(named) {
+        return given.vertices[named as usize] - origin;
+    }
+    let hub = &given.points[hubs::number_of(named) as usize];
+    Vec3::from(hub.position) + (Vec3::from(hub.normal) - origin)
 }
 
 /// From along a patch's edge to along the whole edge in its own direction.
@@ -239,13 +264,6 @@ impl<'a> Use<'a> {
         })
     }
 
-    /// Where these are.
-    pub(super) fn ring(&self, positions: &[Vec3]) -> Vec<Vec3> {
-        self.vertices()
-            .map(|vertex| positions[vertex as usize])
-            .collect()
-    }
-
     /// Place `i` of the list that begins at `start`.
     pub(super) fn place(&self, start: u32, i: usize) -> u32 {
         let ring = self.border.used(0).size as usize;
@@ -262,15 +280,32 @@ impl<'a> Use<'a> {
     }
 
     /// The vertex of a corner, which points near it are relative to.
-    fn corner(&self, positions: &[Vec3], corner: u32) -> Vec3 {
+    fn corner(&self, given: &Controls, corner: u32) -> Vec3 {
         let number = self.border.use_of_corner(corner) as usize;
         let place = self.place(self.border.used(number).ring, 0);
-        positions[self.pass.controls[(self.controls + place) as usize] as usize]
+        position(given, self.pass.controls[(self.controls + place) as usize])
     }
 
     /// What its points are relative to where nothing else is said.
-    fn origin(&self, positions: &[Vec3]) -> Vec3 {
-        self.ring(positions)[0]
+    pub(super) fn origin(&self, given: &Controls) -> Vec3 {
+        let first = self.vertices().next();
+        position(given, first.expect("a ring has vertices"))
+    }
+
+    /// The limit of a corner, and its normal.
+    fn limit(&self, given: &Controls, flags: u32) -> SurfacePoint {
+        let origin = self.origin(given);
+        if flags & abi::USE_HUB == 0 {
+            return SurfacePoint {
+                position: self.point(given, 0) + origin,
+                normal: self.vertex_normal(given, flags),
+            };
+        }
+        let &abi::Use { rows, root, .. } = self.border.used(self.number);
+        SurfacePoint {
+            position: spoke(given, abi::HUB_POINT | rows, origin) + origin,
+            normal: given.points[root as usize].normal.into(),
+        }
     }
 
     /// The order in which stencils are summed.
@@ -282,22 +317,24 @@ impl<'a> Use<'a> {
     }
 
     /// Point `number` of its slot.
-    fn point(&self, positions: &[Vec3], number: u32) -> Vec3 {
-        let ring = self.ring(positions);
+    fn point(&self, given: &Controls, number: u32) -> Vec3 {
+        let mut vertices = self.vertices();
         if !self.has_plan() {
-            return ring[number as usize];
+            let vertex = vertices.nth(number as usize);
+            return position(given, vertex.expect("points are the use's own"));
         }
+        let ring: SmallVec<[u32; 64]> = vertices.collect();
         let row = self.stencil(number);
         let origin = match row.corner {
-            abi::STENCIL_OWN => ring[0],
-            corner => self.corner(positions, corner),
+            abi::STENCIL_OWN => position(given, ring[0]),
+            corner => self.corner(given, corner),
         };
         let places = (0..ring.len()).map(|i| self.order(i));
-        let terms = places.map(|place| row.weight(place) * (ring[place] - origin));
+        let terms = places.map(|place| row.weight(place) * spoke(given, ring[place], origin));
         weighted_sum(ring.len(), terms)
     }
 
-    fn evaluate(&self, positions: &[Vec3], root: u32, uv: Vec2, side: u32) -> Surface {
+    fn evaluate(&self, given: &Controls, root: u32, uv: Vec2, side: u32) -> Surface {
         let leaf = walk(self.plans, root, uv);
         let leaf = leaf.expect("borders have the roots of packed trees");
         let (u, mut v) = creased(leaf.uv, leaf.edge, leaf.sharpness);
@@ -307,16 +344,16 @@ impl<'a> Use<'a> {
         let points = leaf.points + 16 * side;
         let surface = bspline(u, v, leaf.scale, |x, y| {
             let number = self.plans.point(points + x as u32 + 4 * y as u32);
-            self.point(positions, number.expect("leaves have their points"))
+            self.point(given, number.expect("leaves have their points"))
         });
         let base = match leaf.base {
             0 => Vec3::ZERO,
-            number => self.point(positions, number - 1),
+            number => self.point(given, number - 1),
         };
         let origin = match leaf.origin {
-            0 => self.origin(positions),
+            0 => self.origin(given),
             abi::ORIGIN_NONE => Vec3::ZERO,
-            corner => self.corner(positions, corner),
+            corner => self.corner(given, corner),
         };
         Surface {
             position: (surface.position + base) + origin,

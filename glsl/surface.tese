@@ -43,7 +43,11 @@ Levels decided_levels() {
 
 void main() {
     Patch record = patch_record(in_patch);
+#ifdef MACRO_FACES
+    Levels levels = cell_levels(record, decided_levels());
+#else
     Levels levels = decided_levels();
+#endif
     vec2 uv = shared_coordinates(record, levels, gl_TessCoord);
     if (TANGENTS) tangent_level = required_level(levels);
     write_vertex(record, in_patch, SEEN_VIEW, uv, evaluate_patch(record, in_slot, uv));

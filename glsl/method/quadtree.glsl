@@ -11,6 +11,7 @@
 #ifndef CACHED_POINTS
 #define SCRATCH_RING
 #endif
+#define COUNTED_EDGES
 
 #include "lib/border.glsl"
 #include "lib/cell.glsl"
@@ -67,7 +68,7 @@ uint place_at(uint list, uint i) {
 
 // A vertex of the patch's 1-ring. The index is clamped although it is only used when it is small: a driver may fetch first and choose then.
 vec3 ring_point(Patch record, uint place) {
-#ifdef STAGE_COMPUTE
+#if defined(STAGE_COMPUTE) || defined(FETCHED_RINGS)
     return control_vertex(control_at(record.controls + place));
 #else
     vec3 piped = in_point[min(place, CONTROL_INVOCATIONS - 1u)];

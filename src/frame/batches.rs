@@ -83,9 +83,8 @@ impl Bounds {
             return u32::MAX;
         };
         let levels = (0..pass.patches.len()).filter_map(|patch| cut.levels(pass, patch));
-        let greatest = levels.map(|levels| levels.greatest());
-        let segments = cut.spacing.segments(greatest.fold(1.0, f32::max));
-        patches_per_instance(most, segments)
+        let segments = levels.map(|levels| levels.greatest_segments(cut.spacing));
+        patches_per_instance(most, segments.max().unwrap_or(1))
     }
 
     /// As many of some patches, from the first on, as fit, one at least; as one instance.

@@ -8,8 +8,8 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
 use crate::frame::{Backend, Cut, Decides, Draw, Residence, SurfaceOptions};
-use crate::method::{DepthTags, Pass, Prepared};
-use crate::tessellation::{Levels, levels_of_edges};
+use crate::method::{DepthTags, MacroFaces, Pass, Prepared};
+use crate::tessellation::{Levels, Spacing, levels_of_edges};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
 ///
@@ -50,6 +50,7 @@ impl DrawList {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         options.check(prepared)?;
         let cut = options.cut(cut)?;
+        check_macro_faces(prepared, cut, tags)?;
         let bounds = options.bounds(instance_vertices);
         let runs = batches(prepared, cut, bounds)?;
         let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
@@ -330,6 +331,18 @@ impl<'a> Batch<'a> {
     pub fn draws(&self) -> &'a [Draw] {
         &self.list.draws[self.number]
     }
+}
+
+/// # Errors
+/// [`Misuse::MacroFaces`] for levels of their own, and for fractional spacing: a side of a macro face has vertices where those of its faces are.
+fn check_macro_faces(prepared: &Prepared, cut: Cut, tags: Option<&DepthTags>) -> Result<()> {
+    let what = match () {
+        () if prepared.macro_faces == MacroFaces::None => return Ok(()),
+        () if cut.spacing != Spacing::Equal => "fractional spacing",
+        () if tags.is_some() => "depth tags",
+        () => return Ok(()),
+    };
+    Err(Error::Misuse(Misuse::MacroFaces { what }))
 }
 
 /// The levels that depth tags give to all patches, at a cut as the backend makes it.

@@ -96,12 +96,13 @@ impl DrawList {
 }
 
 /// What a mould depends on.
-type Key = (usize, [u32; 5]);
+type Key = (usize, [u32; 2], [u32; 5]);
 
 fn key(levels: &Levels) -> Key {
     let [a, b, c, d] = levels.edges.map(f32::to_bits);
     (
         levels.domain.corners(),
+        levels.cells,
         [a, b, c, d, levels.inside.to_bits()],
     )
 }

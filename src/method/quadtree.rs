@@ -8,6 +8,7 @@ mod cached;
 mod configurations;
 mod corner;
 mod irregular;
+mod macro_faces;
 mod places;
 mod plain;
 mod planned;
@@ -26,11 +27,13 @@ use std::time::Instant;
 use glam::Vec3;
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces};
+use crate::method::{
+    Contract, MacroFaces, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces,
+};
 use crate::plan::database::Entry;
 use crate::plan::{Database, NodeKind, PlanOptions, SmoothQuads};
 use crate::tessellation::Domain;
@@ -55,6 +58,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: false,
+    aggregates: true,
     covers: bounded::check,
     prepare,
     edits: Some(editable),
@@ -106,8 +110,13 @@ fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
 }
 
 fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result<Prepared> {
+    let faces = options.macro_faces.check()?;
     let (mut prepared, planner) = planned(model, options, database, false)?;
     planner.give(&mut prepared.passes);
+    if faces != MacroFaces::None {
+        let single = std::mem::take(&mut prepared.passes);
+        prepared.passes = macro_faces::aggregated(single, model, faces);
+    }
     // Passes without patches are left out.
     let Prepared {
         passes,
@@ -118,6 +127,7 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
     Ok(Prepared {
         plans,
         cached,
+        macro_faces: faces,
         ..Prepared::of(passes)
     })
 }
@@ -127,6 +137,13 @@ fn editable(
     options: MethodOptions,
     database: &Database,
 ) -> Result<(Prepared, Box<dyn Edits>)> {
+    if options.macro_faces != MacroFaces::None {
+        return Err(Error::Option {
+            option: "--macro",
+            problem: "faces that are drawn together are not edited".into(),
+            remedy: "leave it out, or prepare anew after each edit".into(),
+        });
+    }
     let (prepared, planner) = planned(model, options, database, true)?;
     Ok((prepared, Box::new(planner)))
 }

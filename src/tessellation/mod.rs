@@ -7,6 +7,8 @@ mod rings;
 mod triangulate;
 
 pub use coordinates::coordinates;
+pub(crate) use levels::cells;
 pub use levels::{Domain, Levels, Spacing, levels, levels_of_edges, required_level};
 pub use pattern::{lattice_rows, lattice_segments, lattice_vertices, pattern};
 pub use triangulate::triangulate;
+pub(crate) use triangulate::triangulate_levels;

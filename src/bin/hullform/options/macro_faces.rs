@@ -32,6 +32,11 @@ enum Kind {
 const USUAL_SPAN: u32 = 16;
 
 impl Macro {
+    /// Whether any are.
+    pub fn is_asked(&self) -> bool {
+        self.kind != Kind::None
+    }
+
     /// What is to be drawn together at tess levels up to `level`.
     pub fn faces(&self, level: f32) -> MacroFaces {
         let allowed = (64.0 / level.ceil()) as u32;

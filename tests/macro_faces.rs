@@ -347,7 +347,7 @@ fn cells_have_the_bits_of_faces() {
 }
 
 proptest! {
-    #![proptest_config(cases(32))]
+    #![proptest_config(cases(12))]
 
     #[test]
     fn cells_of_any_mesh_have_the_bits_of_faces(recipe in wild()) {

@@ -19,15 +19,11 @@ fn share(results: &Results, step: &str) -> Option<f64> {
 
 /// How many frames with macro faces one with single faces takes.
 fn gain(results: &Results, [single, together]: [&str; 2], level: f64) -> Option<f64> {
-    // Of the method that is compared with the faces themselves.
-    let row = |step: &str| {
-        let rows = results.0.get(step)?.get("rows")?.as_array()?;
-        let own = rows
-            .iter()
-            .find(|row| row["method"] != "flat" && row["level"] == level)?;
-        results.milliseconds(step, own)
+    let time = |step: &str| {
+        let row = results.row(step, "quadtree", Some(level), None)?;
+        results.milliseconds(step, row)
     };
-    Some(row(single)? / row(together)?)
+    Some(time(single)? / time(together)?)
 }
 
 /// Figure 7.

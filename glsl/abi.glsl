@@ -180,6 +180,22 @@ const uint PATCH_MIRRORED = 4194304u;
 const uint PATCH_VACANT = 2147483648u;
 // Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
 const uint PATCH_RING_SHIFT = 23u;
+// Patch flag: on all edges vertices are counted, since macro faces may lie beyond: their sides have the vertices of several edges.
+const uint PATCH_COUNTED = 536870912u;
+// Patch flag: a macro face, of several faces. Levels are those of each of its cells.
+const uint PATCH_MACRO = 1073741824u;
+// Patch flag of a macro face: its columns less 1; five bits.
+const uint MACRO_COLUMNS_SHIFT = 16u;
+// Patch flag of a macro face: its rows less 1; five bits.
+const uint MACRO_ROWS_SHIFT = 21u;
+// The words that a macro face's control vertices stand behind: the slot of its first cell, one over its columns and one over its rows, both floats, and how many
+// cells have plans. Row by row come (columns + 3) times (rows + 3) vertices, then a word a cell: how many cells with plans are before it, and its turn; and the
+// slots of the cells with plans.
+const uint MACRO_HEADER = 4u;
+// In a cell's word: the corner of the face's own patch that is at the cell's (0, 0); two bits.
+const uint MACRO_TURN_SHIFT = 16u;
+// Where in a cell a vertex can be: in so many steps a cell.
+const uint MACRO_STEPS = 65536u;
 // Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
 const uint PATCH_REFINED = 32768u;
 // Patch flag: which child of its ptex face a patch is; four bits. 0 is the whole face.

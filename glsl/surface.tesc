@@ -29,6 +29,10 @@ void main() {
     bool drawn = number < frame.end_patch && levels.inside > 0.0;
 #ifdef SCRATCH_RING
     uint level = required_level(levels);
+#ifdef MACRO_FACES
+    // Of one row there are two segments across at least.
+    if (any(equal(cells_of(record), uvec2(1u)))) level = max(level, 1u);
+#endif
     uint count = drawn ? scratch_points(record, level) : 0u;
     if (gl_InvocationID == 0) out_slot = take_slot(number, count);
     barrier();
@@ -47,19 +51,28 @@ void main() {
         out_view = in_view[0];
         // Outer level 0 discards a patch (Vulkan spec, "Tessellator Patch Discard").
         vec4 edges = drawn ? levels.edges : vec4(0.0);
+        vec2 inside = vec2(levels.inside);
+#ifdef MACRO_FACES
+        // Each cell has whole segments.
+        vec2 cells = vec2(cells_of(record));
+        precise vec4 whole_edges = ceil(edges) * cells.xyxy;
+        precise vec2 whole_inside = ceil(inside) * cells;
+        edges = whole_edges;
+        inside = whole_inside;
+#endif
 #ifdef TRIANGLES
         // Level i belongs to the edge opposite to corner i (Vulkan spec, "Triangle Tessellation").
         gl_TessLevelOuter[0] = edges[1];
         gl_TessLevelOuter[1] = edges[2];
         gl_TessLevelOuter[2] = edges[0];
-        gl_TessLevelInner[0] = levels.inside;
+        gl_TessLevelInner[0] = inside.x;
 #else
         gl_TessLevelOuter[0] = edges[3];
         gl_TessLevelOuter[1] = edges[0];
         gl_TessLevelOuter[2] = edges[1];
         gl_TessLevelOuter[3] = edges[2];
-        gl_TessLevelInner[0] = levels.inside;
-        gl_TessLevelInner[1] = levels.inside;
+        gl_TessLevelInner[0] = inside.x;
+        gl_TessLevelInner[1] = inside.y;
 #endif
     }
 }

@@ -45,7 +45,11 @@ Levels decided_levels() {
 void main() {
     uint number = patch_of(in_patch);
     Patch record = patch_record(number);
+#ifdef MACRO_FACES
+    Levels levels = cell_levels(record, decided_levels());
+#else
     Levels levels = decided_levels();
+#endif
     vec2 uv = gl_TessCoord.xy;
 #ifndef TRIANGLES
     if (are_sub_patches()) {

@@ -21,7 +21,7 @@ fn what_can_be_made_has_numbers_and_what_cannot_has_a_reason() {
         "2016.table.3",
         "2016.table.4",
         "2016.figure.5",
-        "2016.figure.7",
+        "2016.figure.16",
     ];
     let words = [
         &["figures"],
@@ -56,9 +56,9 @@ fn what_can_be_made_has_numbers_and_what_cannot_has_a_reason() {
     let trees = of("2016.figure.5");
     assert_eq!(trees[0]["verdict"], "reproduced", "{trees:?}");
     assert!(
-        of("2016.figure.7")[0]["reason"]
+        of("2016.figure.16")[0]["reason"]
             .as_str()
-            .is_some_and(|reason| reason.contains("macro"))
+            .is_some_and(|reason| reason.contains("figure 17"))
     );
     let page = std::fs::read_to_string(output.join("index.html")).expect("a page");
     for id in ids {

@@ -162,6 +162,7 @@ fn hold_counts(packed: &PackedPlans, plan: u32, level: f32, coordinates: &[[f32;
     let header = packed.headers[plan as usize];
     let levels = Levels {
         domain: Domain::Quads,
+        cells: [1; 2],
         edges: [1.0; 4],
         inside: level,
     };

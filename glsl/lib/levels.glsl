@@ -80,6 +80,8 @@ vec2 shared_coordinates(Patch record, Levels levels, vec3 barycentric) {
     if (edge == 0u) return vec2(t, uv.y);
     return vec2(edge == 1u ? rest : uv.x, t);
 }
+#elif defined(MACRO_FACES)
+#include "lib/macro_face.glsl"
 #else
 // Of an edge beside an n-gon both sides must have the same coordinates, but what the tessellator makes of a quad's 1/6 may differ from half
 // of what it makes of an n-gon's 1/3. Both count vertices, and take an edge's halves from `step_of`.
@@ -96,9 +98,16 @@ vec2 shared_coordinates(Patch record, Levels levels, vec3 coordinates) {
     bool refined = (record.flags & PATCH_REFINED) != 0u;
     bool beside = part ? refined || edge == 0u || edge == 3u : (record.flags & (PATCH_EVEN_EDGE << edge)) != 0u;
 #endif
+#ifdef COUNTED_EDGES
+    // A macro face beyond counts the vertices of all of its faces.
+    if (!part && !beside && (record.flags & PATCH_COUNTED) != 0u) {
+        part = true;
+        beside = true;
+    }
+#endif
     if (on.x == on.y || !beside) return uv;
     float along = on.y ? uv.x : uv.y;
-    uint segments = uint(levels.edges[edge]);
+    uint segments = uint(ceil(levels.edges[edge]));
     uint half_segments = part ? segments : segments / 2u;
     precise float steps = along * float(segments) + 0.5;
     uint i = uint(steps);

@@ -37,6 +37,11 @@ void capture(uint number, vec2 uv, Point point) {
 
 // Linear between the patch's corners. Twin of `Pass::texture_coordinates`.
 vec2 texture_coordinates(uint number, vec2 uv) {
+#ifdef MACRO_FACES
+    CellPlace place = find_cell(patch_record(number), uv);
+    number = place.number;
+    uv = place.uv;
+#endif
     uint first = bases.texture + 4u * number;
     vec2 a = texture_corners[first];
     vec2 b = texture_corners[first + 1u];
@@ -60,7 +65,9 @@ void write_vertex(Patch record, uint number, uint view, vec2 uv, Point point) {
     if (TANGENTS) {
         out_du = kept_du;
         out_dv = kept_dv;
+#ifndef MACRO_FACES
         to_ptex_tangents(record, out_du, out_dv);
+#endif
         if (displaced) displace_tangents(displacement, point.position, point.normal, out_du, out_dv);
     }
 #endif

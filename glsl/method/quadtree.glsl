@@ -11,6 +11,7 @@
 #ifndef CACHED_POINTS
 #define SCRATCH_RING
 #endif
+#define COUNTED_EDGES
 
 #include "lib/border.glsl"
 #include "lib/cell.glsl"
@@ -89,7 +90,7 @@ vec3 ring_point(Patch record, uint place) {
     uint named = place < CONTROL_INVOCATIONS ? 0u : control_at(record.controls + place);
     if ((named & HUB_POINT) != 0u) return hub_spoke(named, vec3(0.0));
 #endif
-#ifdef STAGE_COMPUTE
+#if defined(STAGE_COMPUTE) || defined(FETCHED_RINGS)
     return control_vertex(control_at(record.controls + place));
 #else
     vec3 piped = in_point[min(place, CONTROL_INVOCATIONS - 1u)];

@@ -3,6 +3,8 @@
 #ifndef QUADTREE_REGULAR_GLSL
 #define QUADTREE_REGULAR_GLSL
 
+#define COUNTED_EDGES
+
 #include "lib/cell.glsl"
 #include "lib/control_points.glsl"
 #include "lib/control_vertex.glsl"

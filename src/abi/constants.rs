@@ -183,6 +183,23 @@ constants! {
     /// Patch flag: how many vertices the ring of a patch with a plan has, 32 for more; six bits.
     PATCH_RING_SHIFT = 23;
 
+    /// Patch flag: on all edges vertices are counted, since macro faces may lie beyond: their sides have the vertices of several edges.
+    PATCH_COUNTED = 0x2000_0000;
+    /// Patch flag: a macro face, of several faces. Levels are those of each of its cells.
+    PATCH_MACRO = 0x4000_0000;
+    /// Patch flag of a macro face: its columns less 1; five bits.
+    MACRO_COLUMNS_SHIFT = 16;
+    /// Patch flag of a macro face: its rows less 1; five bits.
+    MACRO_ROWS_SHIFT = 21;
+    /// The words that a macro face's control vertices stand behind: the slot of its first cell, one over its columns and one over its rows, both floats, and how many
+    /// cells have plans. Row by row come (columns + 3) times (rows + 3) vertices, then a word a cell: how many cells with plans are before it, and its turn; and the
+    /// slots of the cells with plans.
+    MACRO_HEADER = 4;
+    /// In a cell's word: the corner of the face's own patch that is at the cell's (0, 0); two bits.
+    MACRO_TURN_SHIFT = 16;
+    /// Where in a cell a vertex can be: in so many steps a cell.
+    MACRO_STEPS = 0x1_0000;
+
     /// Patch flag: a face of the mesh refined once. All edges have half the tess level, and the neighbours' do too.
     PATCH_REFINED = 0x8000;
     /// Patch flag: which child of its ptex face a patch is; four bits. 0 is the whole face.

@@ -51,6 +51,24 @@ pub enum Misuse {
         "levels above 64 are drawn in pieces: make pipelines with PipelineOptions::sub_patches"
     )]
     SubPatchPipelines,
+    /// What does not go with macro faces.
+    #[error(
+        "macro faces are drawn by the tessellator, at one whole level for all: that does not go together with {what}"
+    )]
+    MacroFaces {
+        /// What was asked for as well.
+        what: &'static str,
+    },
+    /// Macro faces at levels of which a side would have more segments than the tessellator makes.
+    #[error(
+        "macro faces of up to {span} faces a side are drawn at levels from 1 to {greatest}, since the tessellator makes 64 segments of a side at most"
+    )]
+    MacroLevel {
+        /// The most faces of a side.
+        span: u32,
+        /// The greatest level.
+        greatest: u32,
+    },
     /// A surface that is never drawn.
     #[error("a surface is drawn in one round at least")]
     NoRounds,

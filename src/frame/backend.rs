@@ -8,7 +8,7 @@ use crate::frame::{Cut, Residence};
 use crate::method::Prepared;
 use crate::tessellation::{
     Levels, Spacing, coordinates, lattice_rows, lattice_segments, lattice_vertices, pattern,
-    triangulate,
+    triangulate_levels,
 };
 
 /// Who cuts patches into triangles. All have them evaluated by the same functions.
@@ -76,13 +76,13 @@ static ROWS: [Row; 3] = [
         vertices: |levels, spacing| levels.different_vertices(spacing),
         triangles: |levels, spacing| levels.triangles(spacing),
         join: |levels, spacing, uv| {
-            let triangles = triangulate(levels.domain, uv);
+            let triangles = triangulate_levels(levels, spacing, uv);
             let expected = levels.triangles(spacing) as usize;
             (triangles.len() >= expected).then_some(triangles)
         },
         mould: |levels, spacing| {
             let uv = coordinates(levels, spacing);
-            let triangles = triangulate(levels.domain, &uv);
+            let triangles = triangulate_levels(levels, spacing, &uv);
             Mould { uv, triangles }
         },
     },

@@ -88,9 +88,8 @@ impl Bounds {
             return u32::MAX;
         };
         let levels = (0..drawn.count()).filter_map(|number| drawn.levels(number));
-        let greatest = levels.map(|levels| levels.greatest());
-        let segments = drawn.cut.spacing.segments(greatest.fold(1.0, f32::max));
-        patches_per_instance(most, segments)
+        let segments = levels.map(|levels| levels.greatest_segments(drawn.cut.spacing));
+        patches_per_instance(most, segments.max().unwrap_or(1))
     }
 
     /// As many of some patches, from the first on, as fit, one at least; as one instance.

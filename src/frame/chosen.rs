@@ -35,6 +35,7 @@ impl DrawList {
                 domain: pass.domain,
                 edges: [0.0; 4],
                 inside: 0.0,
+                cells: [1; 2],
             };
             let levels = |patch: u32| match chosen(number, patch) {
                 true => self.levels(prepared, number, patch),

@@ -230,6 +230,7 @@ mod tests {
     fn uniform(level: f32) -> Levels {
         Levels {
             domain: crate::tessellation::Domain::Quads,
+            cells: [1; 2],
             edges: [level; 4],
             inside: level,
         }

@@ -104,6 +104,7 @@ impl Decision {
     ) -> Option<Levels> {
         let none = Levels {
             domain: pass.domain,
+            cells: [1; 2],
             edges: [0.0; 4],
             inside: 0.0,
         };

@@ -9,8 +9,8 @@ use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
 use crate::frame::sub_patches::{Drawn, has_sub_patches, join, levels_of, sub_patches};
 use crate::frame::{Backend, Cut, Decides, Draw, Residence, SurfaceOptions};
-use crate::method::{DepthTags, Pass, Prepared};
-use crate::tessellation::{Levels, Piece, levels_of_edges_and_inside};
+use crate::method::{DepthTags, MacroFaces, Pass, Prepared};
+use crate::tessellation::{Levels, Piece, Spacing, levels_of_edges_and_inside};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
 ///
@@ -52,6 +52,7 @@ impl DrawList {
     ) -> Result<DrawList> {
         options.check(prepared)?;
         let cut = options.cut(cut)?;
+        check_macro_faces(prepared, cut, tags)?;
         let bounds = options.bounds(instance_vertices);
         if tags.is_some() && options.decides == Decides::Device {
             let what = "depth tags";
@@ -437,6 +438,18 @@ fn all_sub_patches(
         sub_patches(pass, |patch| levels_of(pass, cut, tagged, patch))
     };
     prepared.passes.iter().enumerate().map(of_pass).collect()
+}
+
+/// # Errors
+/// [`Misuse::MacroFaces`] for levels of their own, and for fractional spacing: a side of a macro face has vertices where those of its faces are.
+fn check_macro_faces(prepared: &Prepared, cut: Cut, tags: Option<&DepthTags>) -> Result<()> {
+    let what = match () {
+        () if prepared.macro_faces == MacroFaces::None => return Ok(()),
+        () if cut.spacing != Spacing::Equal => "fractional spacing",
+        () if tags.is_some() => "depth tags",
+        () => return Ok(()),
+    };
+    Err(Error::Misuse(Misuse::MacroFaces { what }))
 }
 
 /// The levels that depth tags give to all patches, at a cut as the backend makes it.

@@ -10,7 +10,7 @@ use crate::frame::sub_patches::most_sub_patches;
 use crate::frame::{Backend, Cut, Residence};
 #[cfg(feature = "vulkan")]
 use crate::method::Pass;
-use crate::method::Prepared;
+use crate::method::{MacroFaces, Prepared};
 use crate::tessellation::{Domain, Spacing};
 
 /// Who gives patches their slots in the scratch ring.
@@ -110,8 +110,36 @@ impl SurfaceOptions {
         self.check_decides()?;
         check_level(self.greatest_level, Spacing::Equal.greatest())?;
         self.check_sub_patches(prepared)?;
+        self.check_macro_faces(prepared)?;
         self.backend
             .check(prepared, self.residence, self.greatest_level)
+    }
+
+    /// All cells of macro faces have one whole level, and control shaders run the stencils of all of a rectangle's.
+    ///
+    /// # Errors
+    /// [`Misuse::MacroFaces`] and [`Misuse::MacroLevel`] for what does not go with macro faces.
+    fn check_macro_faces(&self, prepared: &Prepared) -> Result<()> {
+        let faces = prepared.macro_faces;
+        let mut passes = prepared.passes.iter();
+        let has_no_cache =
+            passes.any(|pass| pass.cached.is_none() && !pass.scratch_points.is_empty());
+        let what = match () {
+            () if faces == MacroFaces::None => return Ok(()),
+            () if self.backend != Backend::Tessellator => "another backend than the tessellator",
+            () if self.decides == Decides::Device => "decisions by the device",
+            () if has_no_cache && self.residence == Residence::Cache => {
+                "a cache, which rectangles with irregular faces do not have"
+            }
+            () if self.greatest_level > faces.greatest_level() as f32 => {
+                return Err(Error::Misuse(Misuse::MacroLevel {
+                    span: faces.span(),
+                    greatest: faces.greatest_level(),
+                }));
+            }
+            () => return Ok(()),
+        };
+        Err(Error::Misuse(Misuse::MacroFaces { what }))
     }
 
     /// # Errors

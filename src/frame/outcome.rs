@@ -47,11 +47,13 @@ impl Outcome {
         for (patch, record) in slots.filter(|&(patch, _)| !pass.is_vacant(patch)) {
             let levels = Levels {
                 domain: pass.domain,
+                cells: [1; 2],
                 edges: record.edges,
                 inside: record.inside,
             };
             let least = Levels {
                 domain: pass.domain,
+                cells: [1; 2],
                 edges: levels.edges.map(counted),
                 inside: counted(levels.inside),
             };
@@ -116,7 +118,7 @@ impl DrawList {
                 };
                 let vertices = backend.evaluations(&levels, spacing);
                 outcome.add(pass, patch, &levels, [vertices, triangles]);
-                outcome.segments = outcome.segments.max(spacing.segments(levels.greatest()));
+                outcome.segments = outcome.segments.max(levels.greatest_segments(spacing));
             }
         }
         outcome

@@ -71,6 +71,7 @@ mod tests {
         let [a, b, c] = edges;
         Levels {
             domain: Domain::Triangles,
+            cells: [1; 2],
             edges: [a, b, c, c],
             inside: a.max(b).max(c),
         }

@@ -44,6 +44,7 @@ pub(crate) fn most_sub_patches(pass: &Pass, level: f32) -> u64 {
         domain: pass.domain,
         edges: [level; 4],
         inside: level,
+        cells: [1; 2],
     };
     (pass.patches.len() as u64) << (2 * levels.piece_depth())
 }
@@ -54,6 +55,7 @@ fn whole_levels(record: &abi::SubPatch) -> Option<Levels> {
         domain: Domain::Quads,
         edges: record.edges,
         inside: record.inside,
+        cells: [1; 2],
     })
 }
 

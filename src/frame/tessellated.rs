@@ -113,8 +113,8 @@ impl DrawList {
     }
 }
 
-/// What a mould depends on: the shape, which edges count as two where vertices are counted, and the levels.
-type Key = (usize, u32, [u32; 5]);
+/// What a mould depends on: the shape, which edges count as two where vertices are counted, the cells, and the levels.
+type Key = (usize, u32, [u32; 2], [u32; 5]);
 
 impl DrawList {
     fn key(&self, patch: &abi::Patch, levels: &Levels) -> Key {
@@ -125,7 +125,12 @@ impl DrawList {
         };
         let [a, b, c, d] = levels.edges.map(f32::to_bits);
         let levels_bits = [a, b, c, d, levels.inside.to_bits()];
-        (levels.domain.corners(), patch.flags & counted, levels_bits)
+        (
+            levels.domain.corners(),
+            patch.flags & counted,
+            levels.cells,
+            levels_bits,
+        )
     }
 
     fn mould(&self, patch: &abi::Patch, levels: &Levels) -> Mould {

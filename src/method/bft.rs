@@ -59,6 +59,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: true,
     isolates: false,
+    aggregates: false,
     covers: covered::check,
     prepare,
     edits: None,

@@ -40,6 +40,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: true,
+    aggregates: false,
     covers: check,
     prepare,
     edits: None,

@@ -29,6 +29,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: false,
+    aggregates: false,
     covers: method::every_mesh,
     prepare,
     edits: None,

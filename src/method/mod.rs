@@ -61,6 +61,7 @@ mod editable;
 mod fas;
 mod flat;
 mod gregory;
+mod macro_faces;
 mod options;
 mod origin;
 mod outline;
@@ -105,6 +106,7 @@ pub use change::{PassChange, Update};
 pub(crate) use deciding::deciding_tables;
 pub use displacement::Displacement;
 pub use editable::Editable;
+pub use macro_faces::{MacroFace, MacroFaceCounts, MacroFaces};
 pub use options::{EndCaps, IsolationOptions, MethodOptions, TableNormals, TableOptions};
 pub use outline::Outline;
 pub use pass::{Pass, Twin, is_on_hexagon};
@@ -191,6 +193,8 @@ pub struct Method {
     pub uses_tables: bool,
     /// Whether it goes by [`MethodOptions::isolation`].
     pub isolates: bool,
+    /// Whether it goes by [`MethodOptions::macro_faces`].
+    pub aggregates: bool,
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
@@ -393,6 +397,8 @@ pub struct Prepared {
     pub outline: Outline,
     /// What is known about the plans, when the method has any.
     pub plans: Option<PlanStatistics>,
+    /// Which faces are drawn together.
+    pub macro_faces: MacroFaces,
     /// Tells what a cache holds of its control points.
     cached: Option<fn(&Prepared, u32) -> CachedPoints>,
     /// The same of what is edited.

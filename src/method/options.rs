@@ -1,6 +1,7 @@
 //! How methods prepare: each takes the options that concern it.
 
 use crate::error::{Error, Result};
+use crate::method::macro_faces::MacroFaces;
 use crate::plan::PlanOptions;
 
 /// The options of all methods.
@@ -12,6 +13,17 @@ pub struct MethodOptions {
     pub tables: TableOptions,
     /// Of methods that refine around features: see [`Method::isolates`](super::Method::isolates).
     pub isolation: IsolationOptions,
+    /// Of methods that draw several faces as one patch: see [`Method::aggregates`](super::Method::aggregates).
+    pub macro_faces: MacroFaces,
+}
+
+impl From<MacroFaces> for MethodOptions {
+    fn from(macro_faces: MacroFaces) -> MethodOptions {
+        MethodOptions {
+            macro_faces,
+            ..Default::default()
+        }
+    }
 }
 
 impl From<PlanOptions> for MethodOptions {

@@ -46,6 +46,8 @@ pub struct Pass {
     pub(super) tangents: Option<TangentsAt>,
     /// Tells by which cell the inside of a patch is evaluated; None where patches have no plans.
     pub(super) cell: Option<CellAt>,
+    /// Tells which face of a macro face has a point; None where there are none.
+    pub(super) face_at: Option<FaceAt>,
     /// How many control vertices bound a patch; None where they do not, see [`Pass::hull`].
     pub(super) hull: Option<fn(&Pass, usize) -> u32>,
     /// Whether these are the control points of a bicubic B-spline, row by row along u.
@@ -62,6 +64,9 @@ pub(super) type TangentsAt = fn(&Pass, &Controls, usize, Vec2, u32) -> [Vec3; 2]
 
 /// The cell at (u, v) of a patch.
 pub(super) type CellAt = fn(&Pass, usize, Vec2) -> Option<Cell>;
+
+/// The slot of the face that has (u, v) of a macro face, and where in its own patch.
+pub(super) type FaceAt = fn(&Pass, usize, Vec2) -> (usize, Vec2);
 
 impl Pass {
     /// A pass without patches.
@@ -88,6 +93,7 @@ impl Pass {
             caps: false,
             tangents: None,
             cell: None,
+            face_at: None,
             hull: None,
             is_spline: false,
             needs: [0; 2],
@@ -164,9 +170,21 @@ impl Pass {
         cell(self, patch, self.domain.nearest(uv.to_array()).into())
     }
 
+    /// The slot, and the place there, that stand for `uv` of patch `patch`: of a macro face those of one of its faces, which tell the ptex face; else the same.
+    pub fn face_at(&self, patch: usize, uv: [f32; 2]) -> (usize, [f32; 2]) {
+        match self.face_at {
+            Some(face_at) if !self.is_vacant(patch) && !Vec2::from(uv).is_nan() => {
+                let (slot, own) = face_at(self, patch, self.domain.nearest(uv).into());
+                (slot, own.to_array())
+            }
+            _ => (patch, uv),
+        }
+    }
+
     /// Texture coordinates at `uv` of the domain of patch `patch`, linear between its corners. Twin of `texture_coordinates` in
     /// `glsl/lib/vertex.glsl`. Zero where there is no such patch.
     pub fn texture_coordinates(&self, patch: usize, uv: [f32; 2]) -> [f32; 2] {
+        let (patch, uv) = self.face_at(patch, uv);
         let corners = self.texture.get(patch).copied().unwrap_or_default();
         linear(self.domain, corners, uv)
     }

@@ -38,6 +38,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: false,
+    aggregates: false,
     covers: vertices::whole_faces,
     prepare,
     edits: None,

@@ -38,6 +38,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: false,
+    aggregates: false,
     covers: bounded::check,
     prepare,
     edits: None,

@@ -10,6 +10,7 @@ mod corner;
 mod hubs;
 mod in_ring;
 mod irregular;
+mod macro_faces;
 mod places;
 mod plain;
 mod planned;
@@ -29,12 +30,14 @@ use std::time::Instant;
 use glam::Vec3;
 
 use crate::abi;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::topology::Hubs;
 use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
 use crate::method::patches::{self, Part};
-use crate::method::{Contract, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces};
+use crate::method::{
+    Contract, MacroFaces, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces,
+};
 use crate::plan::database::Entry;
 use crate::plan::{Database, NodeKind, PlanOptions, SmoothQuads};
 use crate::tessellation::Domain;
@@ -59,6 +62,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: false,
+    aggregates: true,
     covers: bounded::check,
     prepare,
     edits: Some(editable),
@@ -110,8 +114,13 @@ fn reserve(pass: &mut Pass, patches: usize, controls: usize) {
 }
 
 fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result<Prepared> {
+    let faces = options.macro_faces.check()?;
     let (mut prepared, planner) = planned(model, options, database, false)?;
     planner.give(&mut prepared.passes);
+    if faces != MacroFaces::None {
+        let single = std::mem::take(&mut prepared.passes);
+        prepared.passes = macro_faces::aggregated(single, model, faces);
+    }
     // Passes without patches are left out.
     let Prepared {
         passes,
@@ -124,6 +133,7 @@ fn prepare(model: &Model, options: MethodOptions, database: &Database) -> Result
         points,
         plans,
         cached,
+        macro_faces: faces,
         ..Prepared::of(passes)
     })
 }
@@ -134,6 +144,13 @@ fn editable(
     database: &Database,
 ) -> Result<(Prepared, Box<dyn Edits>)> {
     bounded::check_without_hubs(model)?;
+    if options.macro_faces != MacroFaces::None {
+        return Err(Error::Option {
+            option: "--macro",
+            problem: "faces that are drawn together are not edited".into(),
+            remedy: "leave it out, or prepare anew after each edit".into(),
+        });
+    }
     let (prepared, planner) = planned(model, options, database, true)?;
     Ok((prepared, Box::new(planner)))
 }

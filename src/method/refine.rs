@@ -42,6 +42,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: true,
+    aggregates: false,
     covers: method::every_mesh,
     prepare,
     edits: None,

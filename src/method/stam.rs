@@ -42,6 +42,7 @@ pub const METHOD: Method = Method {
     },
     uses_tables: false,
     isolates: false,
+    aggregates: false,
     covers: net::check,
     prepare,
     edits: None,

@@ -77,7 +77,7 @@ impl<'a> SmoothQuads<'a> {
     }
 
     /// The side after one in its face, or so many after.
-    fn after(side: u32, steps: u32) -> u32 {
+    pub fn after(side: u32, steps: u32) -> u32 {
         side & !3 | side.wrapping_add(steps) & 3
     }
 
@@ -130,6 +130,12 @@ impl<'a> SmoothQuads<'a> {
     /// The vertex at which the side begins that comes so many after one in its face.
     pub fn vertex_after(&self, side: u32, steps: u32) -> u32 {
         self.vertex(Self::after(side, steps))
+    }
+
+    /// The side of the one quad beyond a side, which runs the other way; None at boundaries, beside n-gons, and where faces disagree in orientation.
+    pub fn beyond(&self, side: u32) -> Option<u32> {
+        let beyond = self.beyond[side as usize];
+        (beyond != NONE).then_some(beyond)
     }
 
     /// From a side to that of the next face around the vertex at which it begins, counter-clockwise. That vertex must be smooth.

@@ -12,16 +12,19 @@ use crate::tessellation::{Domain, Levels, Spacing};
 /// The vertices of a patch, by v and then u.
 pub fn coordinates(levels: &Levels, spacing: Spacing) -> Vec<[f32; 2]> {
     let corners = levels.domain.corners();
-    let inside = match levels.inside_segments(spacing) {
-        // Just over 1 is two segments.
-        2 if spacing == Spacing::Equal => cuts(spacing, 2.0),
-        _ => cuts(spacing, levels.inside),
+    // Whole levels go by their segments: just over 1 is two of them, and each cell has as many.
+    let of = |level: f32, segments: u32| match spacing {
+        Spacing::Equal => cuts(spacing, segments as f32),
+        Spacing::FractionalEven => cuts(spacing, level),
     };
-    let outer = levels.edges[..corners].iter();
-    let outer: Vec<Vec<f64>> = outer.map(|&level| cuts(spacing, level)).collect();
+    let inside = levels.inside_segments(spacing);
+    let inside = inside.map(|segments| of(levels.inside, segments));
+    let outer =
+        (0..corners).map(|edge| of(levels.edges[edge], levels.edge_segments(edge, spacing)));
+    let outer: Vec<Vec<f64>> = outer.collect();
     let mut found = match levels.domain {
         Domain::Quads => quad(&outer, &inside),
-        Domain::Triangles => triangle(&outer, &inside),
+        Domain::Triangles => triangle(&outer, &inside[0]),
     };
     found.sort_by_key(|uv| [uv[1], uv[0]].map(f32::to_bits));
     found
@@ -29,7 +32,11 @@ pub fn coordinates(levels: &Levels, spacing: Spacing) -> Vec<[f32; 2]> {
 
 /// Where an edge of this level is cut, from 0 to 1; the second half mirrors the first.
 fn cuts(spacing: Spacing, level: f32) -> Vec<f64> {
-    let segments = spacing.segments(level);
+    let segments = match spacing {
+        // Of all cells of a side there may be more than 64.
+        Spacing::Equal => level.ceil() as u32,
+        _ => spacing.segments(level),
+    };
     let near = |i: u32| match spacing {
         Spacing::Equal => f64::from(i) / f64::from(segments),
         Spacing::FractionalEven => fractional(i, segments / 2, f64::from(level) / 2.0),
@@ -60,7 +67,7 @@ fn between(cuts: &[f64]) -> &[f64] {
     cuts.get(1..cuts.len() - 1).unwrap_or_default()
 }
 
-fn quad(outer: &[Vec<f64>], inside: &[f64]) -> Vec<[f32; 2]> {
+fn quad(outer: &[Vec<f64>], [along, across]: &[Vec<f64>; 2]) -> Vec<[f32; 2]> {
     let place = |edge: usize, t: f64| match edge {
         0 => [t, 0.0],
         1 => [1.0, t],
@@ -72,8 +79,8 @@ fn quad(outer: &[Vec<f64>], inside: &[f64]) -> Vec<[f32; 2]> {
         let without_end = &cuts[..cuts.len() - 1];
         without_end.iter().map(move |&t| place(edge, t))
     });
-    let rows = between(inside).iter();
-    let grid = rows.flat_map(|&v| between(inside).iter().map(move |&u| [u, v]));
+    let rows = between(across).iter();
+    let grid = rows.flat_map(|&v| between(along).iter().map(move |&u| [u, v]));
     let all = edges.chain(grid);
     all.map(|uv| uv.map(|x| x as f32)).collect()
 }
@@ -131,6 +138,7 @@ mod tests {
                     };
                     let levels = Levels {
                         domain,
+                        cells: [1; 2],
                         edges,
                         inside: spacing.clamp(level, 10),
                     };

@@ -100,6 +100,8 @@ impl Domain {
 pub struct Levels {
     /// Its shape.
     pub domain: Domain,
+    /// Cells along u and v, each of which has these levels: one of what is no macro face.
+    pub cells: [u32; 2],
     /// Of the edges from corner i to corner i + 1; triangles repeat that of edge 2.
     pub edges: [f32; 4],
     /// Of the inside, in all directions.
@@ -165,6 +167,7 @@ pub(crate) fn levels_of_edges_and_inside(
     };
     Levels {
         domain,
+        cells: cells(patch),
         edges: [0, 1, 2, 3].map(level),
         inside,
     }
@@ -180,6 +183,15 @@ fn halvings(patch: &abi::Patch) -> u32 {
         0
     };
     depth + u32::from(patch.flags & abi::PATCH_HALF != 0)
+}
+
+/// The columns and rows of a macro face; one each of other patches. Twin of `cells_of` in `glsl/lib/macro_face.glsl`.
+pub(crate) fn cells(patch: &abi::Patch) -> [u32; 2] {
+    match patch.flags & abi::PATCH_MACRO {
+        0 => [1; 2],
+        _ => [abi::MACRO_COLUMNS_SHIFT, abi::MACRO_ROWS_SHIFT]
+            .map(|shift| (patch.flags >> shift & 31) + 1),
+    }
 }
 
 impl Levels {
@@ -205,10 +217,10 @@ impl Levels {
     }
 
     fn at_once(&self, spacing: Spacing) -> u32 {
-        let inside = self.inside_segments(spacing);
+        let [inside, across] = self.inside_segments(spacing);
         match self.domain {
-            _ if inside == 1 => self.domain.corners() as u32,
-            Domain::Quads => self.outer(spacing) + (inside - 1) * (inside - 1),
+            _ if inside * across == 1 => self.domain.corners() as u32,
+            Domain::Quads => self.outer(spacing) + (inside - 1) * (across - 1),
             Domain::Triangles => {
                 self.outer(spacing) + inner_rings(inside).map(ring_vertices).sum::<u32>()
             }
@@ -224,12 +236,11 @@ impl Levels {
     }
 
     fn triangles_at_once(&self, spacing: Spacing) -> u32 {
-        let inside = self.inside_segments(spacing);
+        let [inside, across] = self.inside_segments(spacing);
         match self.domain {
-            Domain::Quads if inside == 1 => 2,
-            Domain::Quads => {
-                self.outer(spacing) + 4 * (inside - 2) + 2 * (inside - 2) * (inside - 2)
-            }
+            Domain::Quads if inside * across == 1 => 2,
+            // By Euler's formula.
+            Domain::Quads => self.outer(spacing) + 2 * (inside - 1) * (across - 1) - 2,
             Domain::Triangles if inside == 1 => 1,
             // Between two rings there are as many triangles as both have segments; the innermost ring may itself be a triangle.
             Domain::Triangles => {
@@ -242,17 +253,31 @@ impl Levels {
 
     /// The segments of all edges.
     fn outer(&self, spacing: Spacing) -> u32 {
-        let edges = &self.edges[..self.domain.corners()];
-        edges.iter().map(|&level| spacing.segments(level)).sum()
+        let edges = 0..self.domain.corners();
+        edges.map(|edge| self.edge_segments(edge, spacing)).sum()
     }
 
-    /// An inside level of 1 counts as just over 1 unless all levels are 1.
-    pub(super) fn inside_segments(&self, spacing: Spacing) -> u32 {
-        let inside = spacing.segments(self.inside);
-        if inside == 1 && self.edges.iter().any(|&level| spacing.segments(level) > 1) {
-            2
-        } else {
-            inside
+    /// The segments of an edge, over all cells.
+    pub(super) fn edge_segments(&self, edge: usize, spacing: Spacing) -> u32 {
+        self.cells[edge % 2] * spacing.segments(self.edges[edge])
+    }
+
+    /// The greatest number of segments of an edge or of the inside, over all cells.
+    pub(crate) fn greatest_segments(&self, spacing: Spacing) -> u32 {
+        self.cells[0].max(self.cells[1]) * spacing.segments(self.greatest())
+    }
+
+    /// Of the inside along u and v. A level of 1 counts as just over 1 unless all levels are 1.
+    pub(super) fn inside_segments(&self, spacing: Spacing) -> [u32; 2] {
+        let inside = self
+            .cells
+            .map(|cells| cells * spacing.segments(self.inside));
+        let mut edges = 0..self.domain.corners();
+        let is_cut =
+            inside[0] * inside[1] > 1 || edges.any(|edge| self.edge_segments(edge, spacing) > 1);
+        match is_cut {
+            true => inside.map(|segments| segments.max(2)),
+            false => inside,
         }
     }
 }
@@ -270,7 +295,9 @@ pub(crate) fn ring_vertices(segments: u32) -> u32 {
 
 /// The plan level that tess levels need: ceil(log2 of the greatest), at most `max_level`.
 pub fn required_level(levels: &Levels, max_level: u32) -> u32 {
-    (0..max_level.min(64))
+    // A macro face of one row has two segments across at least, see `Levels::inside_segments`.
+    let is_row = levels.cells != [1; 2] && levels.cells.contains(&1);
+    (u32::from(is_row)..max_level.min(64))
         .find(|&level| (1u64 << level) as f32 >= levels.greatest())
         .unwrap_or(max_level)
 }
@@ -294,6 +321,7 @@ mod tests {
                         assert!(made.vertices(spacing) > 0 && made.triangles(spacing) > 0);
                         let raw = Levels {
                             domain,
+                            cells: [1; 2],
                             edges: [level; 4],
                             inside: level,
                         };
@@ -381,6 +409,7 @@ mod tests {
                 for edge in [1.0, level, 5.0] {
                     let levels = Levels {
                         domain,
+                        cells: [1; 2],
                         edges: [edge, level, level, level],
                         inside: level,
                     };

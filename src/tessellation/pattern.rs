@@ -103,6 +103,7 @@ mod tests {
             let edges = [0, 1, 2, 3].map(|i| (1 << (number / depths.pow(i) % depths)) as f32);
             let levels = Levels {
                 domain,
+                cells: [1; 2],
                 edges,
                 inside: edges[..domain.corners()]
                     .iter()
@@ -149,6 +150,7 @@ mod tests {
         for depth in 0..=6 {
             let levels = |domain| Levels {
                 domain,
+                cells: [1; 2],
                 edges: [(1 << depth) as f32; 4],
                 inside: (1 << depth) as f32,
             };

@@ -178,6 +178,7 @@ mod tests {
             let [a, b, c] = edges.map(|edge| edge as f32);
             let levels = Levels {
                 domain: Domain::Triangles,
+                cells: [1; 2],
                 edges: [a, b, c, c],
                 inside: inside as f32,
             };

@@ -4,13 +4,28 @@
 //! sides of that gap together. Inside, quads are a full grid, triangles are rings within one another.
 
 use crate::tessellation::rings::{order, stitch};
-use crate::tessellation::{Domain, rings};
+use crate::tessellation::{Domain, Levels, Spacing, rings};
 
 /// The triangles of a patch, counter-clockwise in (u, v), as numbers of its vertices `uv`, which may come in any order.
 ///
 /// The outer edges may have different numbers of vertices; those inside must be as the tessellator makes them. There are no triangles where the
 /// vertices are none of a patch: where a corner lacks, a coordinate is outside of 0..=1 or no number, or those inside have the wrong number.
 pub fn triangulate(domain: Domain, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+    triangles(domain, None, uv)
+}
+
+/// The same of a patch whose levels are known: inside of a macro face there are not as many columns as rows.
+pub(crate) fn triangulate_levels(
+    levels: &Levels,
+    spacing: Spacing,
+    uv: &[[f32; 2]],
+) -> Vec<[u32; 3]> {
+    let [columns, _] = levels.inside_segments(spacing);
+    let columns = (levels.cells != [1; 2]).then_some(columns as usize - 1);
+    triangles(levels.domain, columns, uv)
+}
+
+fn triangles(domain: Domain, columns: Option<usize>, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
     // The corners of triangles come out of sums that round.
     let rounded = match domain {
         Domain::Quads => 0.0,
@@ -26,18 +41,24 @@ pub fn triangulate(domain: Domain, uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
         return Vec::new();
     }
     match domain {
-        Domain::Quads => quad(uv),
+        Domain::Quads => quad(uv, columns),
         Domain::Triangles => rings::triangle(uv),
     }
 }
 
-fn quad(uv: &[[f32; 2]]) -> Vec<[u32; 3]> {
+/// A row inside has so many vertices, or as many as there are rows.
+fn quad(uv: &[[f32; 2]], columns: Option<usize>) -> Vec<[u32; 3]> {
     let is_edge = |x: f32| x == 0.0 || x == 1.0;
     let inside: Vec<u32> = numbers(uv, |[u, v]| !is_edge(u) && !is_edge(v));
-    if inside.len().isqrt().pow(2) != inside.len() {
+    let is_full = match columns {
+        Some(columns) => inside.len().is_multiple_of(columns),
+        None => inside.len().isqrt().pow(2) == inside.len(),
+    };
+    if !is_full {
         return Vec::new();
     }
-    let rows = rows(uv, inside);
+    let columns = columns.unwrap_or_else(|| inside.len().isqrt()).max(1);
+    let rows = rows(uv, inside, columns);
     let mut triangles = grid(&rows);
     for side in 0..4 {
         let outer = numbers(uv, |at| turned(at, side)[1] == 0.0);
@@ -91,11 +112,10 @@ fn sorted(uv: &[[f32; 2]], mut vertices: Vec<u32>, side: usize) -> Vec<u32> {
 }
 
 /// The inside vertices row by row, each sorted by u.
-fn rows(uv: &[[f32; 2]], mut inside: Vec<u32>) -> Vec<Vec<u32>> {
-    let side = (inside.len() as f64).sqrt().round() as usize;
+fn rows(uv: &[[f32; 2]], mut inside: Vec<u32>, columns: usize) -> Vec<Vec<u32>> {
     inside.sort_by(|&a, &b| order(uv[a as usize][1], uv[b as usize][1]));
     let rows = inside
-        .chunks(side.max(1))
+        .chunks(columns)
         .map(|row| sorted(uv, row.to_vec(), 0));
     rows.collect()
 }

@@ -17,6 +17,7 @@ mod flight;
 mod hexagon;
 mod instances;
 mod lifetimes;
+mod macro_faces;
 mod memory;
 mod misuse;
 mod own;

@@ -147,6 +147,7 @@ fn decided(drawing: &Drawing<'_>, pass: usize, patch: u32) -> Option<Levels> {
     let record = record.filter(|_| there)?;
     Some(Levels {
         domain: drawing.prepared().passes[pass].domain,
+        cells: [1; 2],
         edges: record.edges,
         inside: record.inside,
     })
@@ -186,9 +187,11 @@ fn add_patches(
             .triangles
             .extend(triangles.map(|triangle| triangle.map(|i| first + i)));
         surface.points.extend(vertices.iter().map(|vertex| {
+            let (slot, uv) = pass.face_at(number as usize, vertex.uv);
+            let face = &pass.patches[slot];
             Point {
-                face: patch.ptex,
-                uv: to_ptex(patch, vertex.uv),
+                face: face.ptex,
+                uv: to_ptex(face, uv),
                 position: placement
                     .position(Vec3::from(vertex.position).as_dvec3())
                     .to_array(),

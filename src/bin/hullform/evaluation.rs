@@ -3,7 +3,7 @@
 use hullform::frame::{DrawList, SurfaceOptions};
 use hullform::gpu::Residence;
 use hullform::mesh::Model;
-use hullform::method::to_ptex;
+use hullform::method::{MacroFaces, to_ptex};
 use hullform::{Error, Result};
 use rayon::prelude::*;
 
@@ -23,8 +23,12 @@ pub fn evaluate(model: &Model, chosen: Chosen, cutting: Cutting) -> Result<Surfa
     let prepared = drawing::prepare(model, chosen)?;
     let options = SurfaceOptions {
         backend: cutting.backend,
-        // Nothing is kept in a ring.
-        residence: Residence::Cache,
+        // Nothing is kept in a ring, but rectangles of faces have no cache.
+        residence: match prepared.macro_faces {
+            MacroFaces::Rectangles { .. } => Residence::Ring,
+            _ => Residence::Cache,
+        },
+        ring_bytes: u64::MAX,
         greatest_level: cutting.cut.level,
         ..Default::default()
     };
@@ -33,10 +37,11 @@ pub fn evaluate(model: &Model, chosen: Chosen, cutting: Cutting) -> Result<Surfa
     let placement = model.placement();
     let points = tessellated.points.par_iter().map(|point| {
         let pass = &prepared.passes[point.pass as usize];
-        let patch = &pass.patches[point.patch as usize];
+        let (slot, uv) = pass.face_at(point.patch as usize, point.uv);
+        let patch = &pass.patches[slot];
         Point {
             face: patch.ptex,
-            uv: to_ptex(patch, point.uv),
+            uv: to_ptex(patch, uv),
             position: placement
                 .position(point.surface.position.as_dvec3())
                 .to_array(),

@@ -1,6 +1,7 @@
 //! Options that several subcommands share, and how their values are read.
 
 mod culling;
+mod macro_faces;
 mod standpoint;
 mod steps;
 mod tables;
@@ -18,6 +19,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 pub use culling::Culling;
+pub use macro_faces::Macro;
 pub use standpoint::{Cull, Standpoint};
 pub use steps::{Backend, Residence, Steps};
 pub use tables::Tables;

@@ -11,7 +11,7 @@ use clap::Args;
 use face::FacePlan;
 use hullform::abi::Patch;
 use hullform::mesh::{ControlMesh, Model, replicated};
-use hullform::method::{Prepared, method};
+use hullform::method::{MacroFaces, Prepared, method};
 use hullform::plan::{PlanOptions, Ring};
 use hullform::{Error, Result};
 use serde_json::{Map, Value, json};
@@ -32,6 +32,8 @@ pub struct Arguments {
     /// Refine along creases instead of evaluating them directly
     #[arg(long)]
     no_direct_creases: bool,
+    #[command(flatten)]
+    macro_faces: options::Macro,
     /// Plan so many copies of the model on a grid: how cost grows with size
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     replicate: u32,
@@ -148,6 +150,23 @@ fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
     all.len()
 }
 
+/// What there is to tell about macro faces.
+fn macro_facts(faces: MacroFaces, model: &Model) -> Value {
+    let started = Instant::now();
+    let counts = faces.count(model);
+    let [longer, shorter] = counts.largest;
+    json!({
+        "span": faces.span(),
+        "macro_faces": counts.macro_faces,
+        "faces_in_them": counts.faces,
+        "largest": format!("{longer}x{shorter}"),
+        "other_irregular": counts.irregular,
+        "other_regular": counts.regular,
+        "greatest_level": faces.greatest_level(),
+        "seconds": started.elapsed().as_secs_f64(),
+    })
+}
+
 /// What there is to tell about the plans of `mesh`, in the order to tell it.
 fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<String, Value>> {
     let options = arguments.options();
@@ -166,7 +185,7 @@ fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<Stri
             plans.control_points[level as usize].into(),
         )
     });
-    let facts = json!({
+    let mut facts = json!({
         "vertices": mesh.vertex_count(),
         "faces": mesh.face_count(),
         "patches": plans.regular + plans.irregular,
@@ -204,6 +223,11 @@ fn facts(mesh: ControlMesh, arguments: &Arguments, read: f64) -> Result<Map<Stri
         "threads": rayon::current_num_threads(),
         "peak_bytes": peak_bytes(),
     });
+    // As for the lowest level.
+    let faces = arguments.macro_faces.faces(1.0).check()?;
+    if faces != MacroFaces::None {
+        facts["macro_faces"] = macro_facts(faces, &model);
+    }
     let Value::Object(facts) = facts else {
         unreachable!("an object was written")
     };

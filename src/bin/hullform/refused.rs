@@ -28,6 +28,11 @@ pub fn in_words_of_options(error: Error) -> Error {
             "--level",
             "choose a level of 64 at most, or a method of quads",
         ),
+        Misuse::MacroFaces { .. } => ("--macro", "leave that out, or --macro"),
+        Misuse::MacroLevel { .. } => (
+            "--level",
+            "choose a lower level, a smaller --macro-span, or leave out --macro",
+        ),
         Misuse::BufferTooLarge { ref what, .. } if what == RING => {
             ("--ring-bytes", "give a smaller ring")
         }

@@ -2,6 +2,7 @@
 
 mod quadratic;
 mod tables;
+mod together;
 mod trees;
 
 use super::figure::{Agrees, Check, Curves, Figure, Make, Results, Step, Writes};

@@ -1,5 +1,6 @@
 //! How methods prepare: options of whatever prepares a model for drawing.
 
+use super::Macro;
 use clap::{Args, ValueEnum};
 use hullform::Error;
 use hullform::method::{
@@ -27,6 +28,8 @@ pub struct Tables {
     /// Patches of what is still irregular after these [default: bicubic]
     #[arg(long, value_name = "KIND")]
     caps: Option<Caps>,
+    #[command(flatten)]
+    macro_faces: Macro,
 }
 
 /// End caps.
@@ -67,7 +70,8 @@ impl Tables {
         let mut groups: Vec<(MethodOptions, Vec<f32>)> = Vec::new();
         let greatest = levels.iter().copied().fold(1.0, f32::max);
         for &level in levels {
-            let own = if method.isolates { level } else { greatest };
+            let is_own = method.isolates || self.macro_faces.is_asked();
+            let own = if is_own { level } else { greatest };
             let options = self.options(all, own)?;
             match groups.iter_mut().find(|(known, _)| *known == options) {
                 Some((_, levels)) => levels.push(level),
@@ -102,6 +106,7 @@ impl Tables {
             tables: self.tables(),
             isolation,
             plans,
+            macro_faces: self.macro_faces.faces(level).check()?,
         })
     }
 
@@ -113,6 +118,7 @@ impl Tables {
             ("--geometric-normals", self.geometric_normals, TABLES),
             ("--isolation", self.isolation.is_some(), ISOLATION),
             ("--caps", self.caps.is_some(), CAPS),
+            ("--macro", self.macro_faces.is_asked(), MACRO),
         ];
         let given = given.into_iter().filter(|(_, given, _)| *given);
         given.map(|(option, _, user)| (option, user))
@@ -156,6 +162,12 @@ const CAPS: User = User {
     lack: "nothing has end caps",
     have: "has end caps",
     uses: |method| matches!(method.contract.reproduces, Reproduces::LimitBesideCaps(_)),
+};
+
+const MACRO: User = User {
+    lack: "no faces are drawn together",
+    have: "draws faces together",
+    uses: |method| method.aggregates,
 };
 
 /// An option, and methods that do not use it.

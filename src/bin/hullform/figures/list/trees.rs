@@ -2,8 +2,6 @@
 
 use super::*;
 
-const NO_MACRO: &str = "macro faces are not in the library, and the model Stirling is not public";
-
 const PLANS: [Step; 3] = [
     step("bigguy", "plan model:bigguy", Writes::Facts),
     step("monsterfrog", "plan model:monsterfrog", Writes::Facts),
@@ -111,18 +109,18 @@ pub const FIGURES: &[Figure] = &[
     figure(
         "2016.figure.7",
         "A rectangular macro face",
-        Make::Cannot(NO_MACRO),
+        together::RECTANGLE,
     ),
     figure(
         "2016.figure.8",
         "Stirling with rectangular macro faces",
-        Make::Cannot(NO_MACRO),
+        together::RECTANGLES,
     ),
-    figure("2016.figure.9", "A regular quartet", Make::Cannot(NO_MACRO)),
+    figure("2016.figure.9", "A regular quartet", together::QUARTET),
     figure(
         "2016.figure.10",
         "Stirling with quartets",
-        Make::Cannot(NO_MACRO),
+        together::QUARTETS,
     ),
     figure(
         "2016.figure.11",
@@ -267,12 +265,12 @@ pub const FIGURES: &[Figure] = &[
     figure(
         "2016.figure.16",
         "Stalls of hull shaders with macro faces",
-        Make::Cannot(NO_MACRO),
+        together::STALLS,
     ),
     figure(
         "2016.figure.17",
         "The speed of macro faces",
-        Make::Cannot(NO_MACRO),
+        together::SPEED,
     ),
     figure(
         "2016.figure.18",

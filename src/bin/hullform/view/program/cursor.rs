@@ -36,6 +36,7 @@ impl Program {
                         .filter(|_| there)?;
                     Some(Levels {
                         domain: prepared.passes[pass].domain,
+                        cells: [1; 2],
                         edges: record.edges,
                         inside: record.inside,
                     })

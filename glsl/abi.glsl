@@ -66,7 +66,7 @@ const uint ROW_OPEN = 2147483648u;
 const uint ROW_FIRM = 1073741824u;
 // Invocations of a workgroup of the shader that computes points.
 const uint POINT_INVOCATIONS = 64u;
-// Invocations of a control shader that runs stencils; also its greatest number of control points.
+// The greatest number of control points of a patch whose control shader runs stencils, and of that shader's invocations.
 const uint CONTROL_INVOCATIONS = 32u;
 // The deepest level of a plan.
 const uint HIGHEST_LEVEL = 10u;

@@ -129,6 +129,9 @@ void main() {
     uint number = drawn_patch(in_drawn);
     Patch record = patch_record(number);
     vec2 pixel = fwidth(in_uv);
+#ifdef MACRO_FACES
+    pixel = cell_pixel(record, in_uv, pixel);
+#endif
     uint view = drawn_view(in_drawn);
     vec3 right = views[view].right;
     vec3 back = views[view].back;

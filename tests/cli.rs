@@ -42,7 +42,7 @@ fn usage_errors_exit_with_2() {
         &["plan"],
         &["plan", "cube.obj", "--max-level", "11"],
         &["plan", "cube.obj", "--max-level", "0"],
-        &["render", "--level", "65"],
+        &["render", "--level", "1025"],
         &["render", "--level", "NaN"],
         &["render", "--size", "10"],
         &["render", "--camera", "1,2"],

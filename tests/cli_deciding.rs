@@ -107,7 +107,7 @@ fn what_nobody_can_decide_is_refused() {
         (&["--cull", "back,front"], "nothing is left"),
         (
             &["--cull", "frustum", "--slots", "host"],
-            "leave out --backend and --slots",
+            "leave out --backend, --slots and levels above 64",
         ),
         (
             &[

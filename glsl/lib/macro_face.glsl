@@ -38,6 +38,12 @@ CellPlace find_cell(Patch record, vec2 uv) {
     return CellPlace(first_cell(record) + number, at, word & 0xffffu, turn, turned);
 }
 
+// What a pixel covers of a cell in the face's own patch, from what it covers of the macro face.
+vec2 cell_pixel(Patch record, vec2 uv, vec2 pixel) {
+    vec2 finer = pixel * vec2(cells_of(record));
+    return (find_cell(record, uv).turn & 1u) != 0u ? finer.yx : finer;
+}
+
 // Whether a cell is evaluated by a plan: it has a ring.
 bool has_plan(Patch cell) { return (cell.flags >> PATCH_RING_SHIFT & 63u) != 0u; }
 

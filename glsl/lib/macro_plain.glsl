@@ -17,7 +17,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 #endif
 
 #ifdef STAGE_FRAGMENT
-Cell cell_at(Patch record, vec2 uv) { return Cell(NODE_REGULAR, find_cell(record, uv).uv, float(max(cells_of(record).x, cells_of(record).y))); }
+Cell cell_at(Patch record, vec2 uv) { return Cell(NODE_REGULAR, find_cell(record, uv).uv, 1.0); }
 #endif
 
 #endif

@@ -93,11 +93,7 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
 Cell cell_at(Patch record, vec2 uv) {
     CellPlace place = find_cell(record, uv);
     Patch cell = patches[place.number];
-    uvec2 cells = cells_of(record);
-    float scale = float(max(cells.x, cells.y));
-    if (!has_plan(cell)) return Cell(NODE_REGULAR, place.uv, scale);
-    Cell own = planned_cell_at(cell, place.uv);
-    return Cell(own.kind, own.uv, own.scale * scale);
+    return has_plan(cell) ? planned_cell_at(cell, place.uv) : Cell(NODE_REGULAR, place.uv, 1.0);
 }
 #endif
 

@@ -152,7 +152,7 @@ mod tests {
         };
         let (whole, drawn) = patches(20);
         assert_eq!(whole, drawn);
-        let (whole, drawn) = patches(900);
+        let (whole, drawn) = patches(4000);
         assert!(drawn > 10 && drawn < whole / 2, "{drawn} of {whole}");
     }
 

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use super::instructions::{DECORATE, instructions};
 
-/// The number of the constant, `INVOCATIONS` in `glsl/method/quadtree.glsl`.
+/// The number of the constant, `INVOCATIONS` in shaders.
 pub(in crate::gpu) const INVOCATIONS_CONSTANT: u32 = 3;
 
 const EXECUTION_MODE: u32 = 16;
@@ -55,11 +55,8 @@ mod tests {
                 sharing.push(*name);
             }
         }
-        let ours = [
-            "quadtree.tesc",
-            "quadtree_long.tesc",
-            "quadtree_rectangles.tesc",
-        ];
-        assert_eq!(sharing, ours);
+        assert_eq!(sharing.len(), 3, "{sharing:?}");
+        let control = |name: &&str| name.ends_with(".tesc");
+        assert!(sharing.iter().all(control), "{sharing:?}");
     }
 }

@@ -42,7 +42,7 @@ impl Configuration {
         Configuration { words }
     }
 
-    /// The local mesh that the words tell: face 0 is the face itself, vertices are numbered as in [`Ring::vertices`].
+    /// The local mesh that the words tell: face 0 is the face itself, vertices are numbered as in [`Ring::vertices`](super::Ring::vertices).
     pub fn topology(&self) -> Topology {
         let mut words = self.words.iter().copied();
         let mut word = || {

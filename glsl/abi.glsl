@@ -42,6 +42,14 @@ const uint BINDING_VIEWS = 11u;
 const uint TABLES = 8u;
 // Behind these, how many tables control points have that are cached.
 const uint CACHED_TABLES = 3u;
+// Specialization constant: what colours mean, `SHADING_...`, in fragment shaders.
+const uint CONSTANT_ID_SHADING = 0u;
+// Specialization constant: whether tangents are asked for, where patches are evaluated.
+const uint CONSTANT_ID_TANGENTS = 1u;
+// Specialization constant: whether what is drawn may be sub-patches.
+const uint CONSTANT_ID_SUB_PATCHES = 2u;
+// Specialization constant: the invocations of control shaders that share their work among them.
+const uint CONSTANT_ID_INVOCATIONS = 3u;
 // Step of points: positions are sums of weighted control vertices.
 const uint POINTS_BLEND = 0u;
 // Step of points: the same, and normals are perpendicular to two more such sums, the tangents.
@@ -503,7 +511,7 @@ struct View {
 
 // What changes from draw to draw; push constants.
 struct Frame {
-    // The tess level of a quad, 1..=64.
+    // The tess level of a quad, 1..=64; up to 1024 where patches are cut into pieces.
     float level;
     // `FRAME_...` flags.
     uint flags;

@@ -12,7 +12,7 @@
 #include "lib/sub_patch.glsl"
 
 // One of SHADING_...; a constant of the pipeline, so that no fragment pays for what others are shaded by.
-layout(constant_id = 0) const uint SHADING = SHADING_LIT;
+layout(constant_id = CONSTANT_ID_SHADING) const uint SHADING = SHADING_LIT;
 
 // Centroid: at silhouettes a pixel's middle lies outside of the triangle, and extrapolated normals would glitter. A position may: it is where
 // the pixel's own line of sight meets the triangle's plane, and differences from pixel to pixel lie in that plane.

@@ -228,7 +228,7 @@ structs! {
 
     /// What changes from draw to draw; push constants.
     Frame {
-        /// The tess level of a quad, 1..=64.
+        /// The tess level of a quad, 1..=64; up to 1024 where patches are cut into pieces.
         level: f32,
         /// `FRAME_...` flags.
         flags: u32,

@@ -26,7 +26,7 @@ Patch patch_record(uint number) { return patches[min(number, frame.end_patch - 1
 // Whether pipelines draw patches that may be cut into pieces: a constant, so that others run no code for it. An engine's own fragment shaders have no such
 // constant, and ask the frame.
 #if defined(STAGE_VERTEX) || defined(STAGE_CONTROL) || defined(STAGE_EVALUATION) || defined(CONSTANT_SUB_PATCHES)
-layout(constant_id = 2) const bool SUB_PATCHES = false;
+layout(constant_id = CONSTANT_ID_SUB_PATCHES) const bool SUB_PATCHES = false;
 #else
 const bool SUB_PATCHES = true;
 #endif

@@ -27,7 +27,7 @@ vec3 surface_normal(Surface surface) {
 // Whether a fragment shader asks for tangents: a constant of the pipeline, so that who does not ask runs no code for them. Geometry shaders have no components to
 // spare for them, and those that have are modules of their own.
 #ifndef STAGE_GEOMETRY
-layout(constant_id = 1) const bool TANGENTS = false;
+layout(constant_id = CONSTANT_ID_TANGENTS) const bool TANGENTS = false;
 #elif defined(WITH_TANGENTS)
 const bool TANGENTS = true;
 #else

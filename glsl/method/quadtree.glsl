@@ -333,7 +333,7 @@ vec4 use_head(Patch record, Parts parts, uint number) {
 
 // How many invocations a patch has, no less than eight: as many as the device runs abreast, for with more of them it would go again through all that is done once a
 // patch. The pipeline says so, and the module's `OutputVertices` with it (`gpu::shaders::invocations`).
-layout(constant_id = 3) const uint INVOCATIONS = CONTROL_INVOCATIONS;
+layout(constant_id = CONSTANT_ID_INVOCATIONS) const uint INVOCATIONS = CONTROL_INVOCATIONS;
 
 // Fills the slot: each point is one invocation's. Those of the inside and of edges are one stretch, so that few invocations have nothing to do; corners,
 // where tangents are summed and normals decided, are another.

@@ -39,6 +39,15 @@ constants! {
     /// Behind these, how many tables control points have that are cached.
     CACHED_TABLES = 3;
 
+    /// Specialization constant: what colours mean, `SHADING_...`, in fragment shaders.
+    CONSTANT_ID_SHADING = 0;
+    /// Specialization constant: whether tangents are asked for, where patches are evaluated.
+    CONSTANT_ID_TANGENTS = 1;
+    /// Specialization constant: whether what is drawn may be sub-patches.
+    CONSTANT_ID_SUB_PATCHES = 2;
+    /// Specialization constant: the invocations of control shaders that share their work among them.
+    CONSTANT_ID_INVOCATIONS = 3;
+
     /// Step of points: positions are sums of weighted control vertices.
     POINTS_BLEND = 0;
     /// Step of points: the same, and normals are perpendicular to two more such sums, the tangents.

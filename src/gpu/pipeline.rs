@@ -4,9 +4,10 @@ mod modules;
 
 use ash::vk;
 
+use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::{Backend, DrawList, Residence, SurfaceOptions};
-use crate::gpu::shaders::{Embedded, INVOCATIONS_CONSTANT, Modules, moved};
+use crate::gpu::shaders::{Embedded, Modules, moved};
 use crate::gpu::target::{Attachments, Fill, OwnLayout, PipelineOptions};
 use crate::gpu::{Layout, failed};
 use crate::method::{Pass, Prepared};
@@ -295,7 +296,13 @@ impl PipelinePlan<'_> {
             u32::from(self.options.sub_patches),
             self.invocations,
         ];
-        let entries = [0, 1, 2, INVOCATIONS_CONSTANT].map(|number| {
+        let numbers = [
+            abi::CONSTANT_ID_SHADING,
+            abi::CONSTANT_ID_TANGENTS,
+            abi::CONSTANT_ID_SUB_PATCHES,
+            abi::CONSTANT_ID_INVOCATIONS,
+        ];
+        let entries = numbers.map(|number| {
             vk::SpecializationMapEntry::default()
                 .constant_id(number)
                 .offset(4 * number)

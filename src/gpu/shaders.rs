@@ -15,7 +15,7 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
-pub(super) use invocations::{INVOCATIONS_CONSTANT, with_invocations};
+pub(super) use invocations::with_invocations;
 #[cfg(feature = "shaderc")]
 pub use live::Glsl;
 pub(super) use outputs::with_outputs;

@@ -6,10 +6,9 @@
 
 use std::borrow::Cow;
 
-use super::instructions::{DECORATE, instructions};
+use crate::abi;
 
-/// The number of the constant, `INVOCATIONS` in shaders.
-pub(in crate::gpu) const INVOCATIONS_CONSTANT: u32 = 3;
+use super::instructions::{DECORATE, instructions};
 
 const EXECUTION_MODE: u32 = 16;
 
@@ -19,7 +18,7 @@ const OUTPUT_VERTICES: u32 = 26;
 /// The module with so many invocations, if it has the constant.
 pub(in crate::gpu) fn with_invocations(words: &[u32], invocations: u32) -> Cow<'_, [u32]> {
     let shares = instructions(words).any(|instruction| {
-        matches!(*instruction, [first, _, SPEC_ID, INVOCATIONS_CONSTANT] if first & 0xffff == DECORATE)
+        matches!(*instruction, [first, _, SPEC_ID, abi::CONSTANT_ID_INVOCATIONS] if first & 0xffff == DECORATE)
     });
     if !shares {
         return Cow::Borrowed(words);
@@ -39,7 +38,6 @@ pub(in crate::gpu) fn with_invocations(words: &[u32], invocations: u32) -> Cow<'
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::abi;
     use crate::gpu::shaders::{MODULES, spirv};
 
     #[test]

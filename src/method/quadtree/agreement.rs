@@ -111,8 +111,10 @@ pub fn agree(
     slots.extend(others.into_iter().filter(|slot| !known.contains(slot)));
 }
 
-/// Of each vertex of a ring, where it stands in another.
-type Places = SmallVec<[Option<u16>; 32]>;
+/// The vertices of a short ring.
+const SHORT: usize = abi::CONTROL_INVOCATIONS as usize;
+/// Of each vertex of a short ring, where it stands in another; [`SHORT`] where it does not.
+type Places = SmallVec<[u8; SHORT]>;
 
 /// What decides whether two sides agree.
 #[derive(PartialEq, Eq, Hash)]
@@ -252,7 +254,8 @@ impl Side<'_> {
         let around: SmallVec<[u32; 64]> = around.copied().collect();
         let place = |&vertex: &u32| {
             let counts = !is_smooth || around.contains(&vertex);
-            other.patch.place(vertex).filter(|_| counts)
+            let place = other.patch.place(vertex).filter(|_| counts);
+            place.map_or(SHORT as u8, |place| place as u8)
         };
         self.patch.vertices.iter().map(place).collect()
     }
@@ -262,7 +265,7 @@ impl Side<'_> {
         own: &Stretch,
         other: Side<'_>,
         others: &Stretch,
-        places: &[Option<u16>],
+        places: &[u8],
         same: &mut Same,
     ) -> bool {
         if (own.depth, own.at, own.crease) != (others.depth, others.at, others.crease) {
@@ -284,25 +287,24 @@ impl Side<'_> {
     }
 
     /// Whether two points are sums of the same: the order is that of the vertices' numbers in the mesh.
-    fn has_terms(self, own: u32, other: Side<'_>, others: u32, places: &[Option<u16>]) -> bool {
+    fn has_terms(self, own: u32, other: Side<'_>, others: u32, places: &[u8]) -> bool {
         let (Some(own), Some(others)) = (self.row(own), other.row(others)) else {
             return false;
         };
-        let mut expected = 0;
-        let mut weights = [0.0; abi::CONTROL_INVOCATIONS as usize];
+        let mut counts = [0; 2];
+        // What stands nowhere has the weight of nothing.
+        let mut weights = [f32::NAN; SHORT + 1];
         let ring = other.patch.vertices.len();
         others.each_weight(ring, |at, weight| {
             weights[at] = weight;
-            expected += u32::from(weight != 0.0);
+            counts[0] += u32::from(weight != 0.0);
         });
         let mut same = true;
         own.each_weight(places.len(), |at, weight| {
-            if weight != 0.0 {
-                same &= places[at].is_some_and(|at| weights[usize::from(at)] == weight);
-                expected = expected.wrapping_sub(1);
-            }
+            same &= weight == 0.0 || weights[usize::from(places[at])] == weight;
+            counts[1] += u32::from(weight != 0.0);
         });
-        same && expected == 0
+        same && counts[0] == counts[1]
     }
 
     fn row(&self, point: u32) -> Option<Row<'_>> {

@@ -216,13 +216,13 @@ fn of_what_is_chosen_all_pieces_are_drawn_and_of_the_others_none() {
     };
     let chosen = |pass: usize, patch: u32| patch % 3 == u32::from(is_cut(pass, patch));
     let few = whole.clone().only(&prepared, chosen).expect("its own");
-    let [mut points, right] = [&few, &whole].map(|list| {
+    let [points, right] = [&few, &whole].map(|list| {
         let surface = list.tessellate(&prepared, &controls);
         surface.expect("it is drawn").points
     });
     assert!(points.len() < right.len());
     let right = right.iter().filter(|p| chosen(p.pass as usize, p.patch));
-    assert!(right.eq(points.drain(..).collect::<Vec<_>>().iter()));
+    assert!(right.eq(&points));
     let (mut cut_up, mut left_out) = (0, 0);
     for pass in 0..prepared.passes.len() {
         let [own, all] = [&few, &whole].map(|list| list.sub_patches(pass));

@@ -146,7 +146,7 @@ impl Editable {
                     self.prepared.surround(model);
                 }
                 let outline = &mut self.prepared.outline;
-                outline.edit_limits(model.topology(), changes);
+                outline.edit_limits(model, changes);
                 let is_whole = patches != self.prepared.capacities();
                 self.prepared.follow(model, is_whole);
                 self.revision = model.revision();

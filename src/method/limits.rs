@@ -3,7 +3,7 @@
 //! A limit is a sum over the vertices around (Halstead, Kass, DeRose 1993, appendix A; on creases Biermann, Levin, Zorin 2000, appendix A). It belongs to its vertex
 //! alone, so all edges there have the same numbers, and with them both faces of each.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -26,55 +26,70 @@ const MOST_CORNERS: usize = 16;
 /// Where the faces around a vertex have more corners together, and no mask is known before its surroundings are refined, it stands for its limit.
 const MOST_AROUND: usize = 256;
 
-/// The limits of all vertices. By default, and where surfaces go through their control vertices, these themselves.
+/// The limits of all vertices, found when somebody asks. By default, and where surfaces go through their control vertices, these themselves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Limits {
-    rows: Arc<Vec<Row>>,
+    topology: Option<Arc<Topology>>,
+    /// Clones find them once.
+    rows: Arc<OnceLock<Vec<Row>>>,
 }
 
 impl Limits {
     /// Of a model whose surface is drawn; `interpolates` where that goes through its vertices whatever the scheme.
     pub fn new(model: &Model, interpolates: bool) -> Limits {
         let scheme = model.mesh().options().scheme;
-        if interpolates || matches!(scheme, Scheme::Butterfly | Scheme::Bilinear) {
-            return Limits::default();
-        }
-        let topology = model.topology();
-        let vertices = (0..topology.vertex_count() as u32).into_par_iter();
-        let rows = vertices.with_min_len(256).map(|v| limit(topology, v));
+        let is_on_surface = interpolates || matches!(scheme, Scheme::Butterfly | Scheme::Bilinear);
         Limits {
-            rows: Arc::new(rows.collect()),
+            topology: (!is_on_surface).then(|| model.shared_topology().clone()),
+            rows: Arc::default(),
         }
     }
 
-    /// Finds those anew that an edit may have changed.
-    pub fn renew(&mut self, topology: &Topology, changes: &ChangeSet) {
-        if self.rows.is_empty() {
+    /// Finds those anew that an edit may have changed, where they are known.
+    pub fn renew(&mut self, model: &Model, changes: &ChangeSet) {
+        if self.topology.is_none() {
             return;
         }
-        let faces = changes.faces().iter();
-        let around = faces.flat_map(|&face| topology.face(face));
+        let topology = model.shared_topology();
+        self.topology = Some(topology.clone());
+        let before = std::mem::take(&mut self.rows);
+        let known = match Arc::try_unwrap(before) {
+            Ok(rows) => rows.into_inner(),
+            Err(shared) => shared.get().cloned(),
+        };
+        let Some(mut rows) = known else { return };
+        let around = changes.faces().iter().flat_map(|&face| topology.face(face));
         // And those that faces have begun or ceased to use.
         let mut vertices: Vec<u32> = around.chain(changes.moved()).copied().collect();
-        vertices.extend(self.rows.len() as u32..topology.vertex_count() as u32);
+        vertices.extend(rows.len() as u32..topology.vertex_count() as u32);
         vertices.sort_unstable();
         vertices.dedup();
-        let rows = Arc::make_mut(&mut self.rows);
         rows.resize(topology.vertex_count(), Row::new());
         for vertex in vertices {
             rows[vertex as usize] = limit(topology, vertex);
         }
+        self.rows = Arc::new(OnceLock::from(rows));
     }
 
     /// Whether all vertices are on the surface.
     #[cfg(feature = "vulkan")]
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.topology.is_none()
     }
 
     /// The terms of a vertex; none where it is on the surface itself, and where there is no such vertex.
     pub fn row(&self, vertex: u32) -> &[(u32, f32)] {
-        self.rows.get(vertex as usize).map_or(&[], |row| &row[..])
+        let Some(topology) = &self.topology else {
+            return &[];
+        };
+        let rows = self.rows.get().unwrap_or_else(|| {
+            let vertices = (0..topology.vertex_count() as u32).into_par_iter();
+            let limit = |vertex| limit(topology, vertex);
+            let found: Vec<Row> = vertices.with_min_len(64).map(limit).collect();
+            // Not within it: a thread that waits there for others may be given work that asks for the same.
+            self.rows.get_or_init(|| found)
+        });
+        rows.get(vertex as usize).map_or(&[], |row| &row[..])
     }
 }
 

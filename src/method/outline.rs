@@ -85,7 +85,7 @@ impl Outline {
     }
 
     /// Where the control vertices at `vertices` are on the surface that is drawn, each by itself: on the limit, or where they are themselves for methods that
-    /// draw through them. Levels of edges go by these places.
+    /// draw through them. Levels of edges go by these places. What they are made of is found the first time, in rayon's current pool.
     ///
     /// # Errors
     /// [`Misuse::Count`] for other than one position a control vertex.
@@ -122,8 +122,8 @@ impl Outline {
     }
 
     /// Brings the limits up to an edited model.
-    pub(super) fn edit_limits(&mut self, topology: &Topology, changes: &ChangeSet) {
-        self.limits.renew(topology, changes);
+    pub(super) fn edit_limits(&mut self, model: &Model, changes: &ChangeSet) {
+        self.limits.renew(model, changes);
     }
 
     /// The limits, for an outline of the same vertices.

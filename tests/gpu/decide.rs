@@ -244,7 +244,7 @@ fn limits_have_the_same_bits_as_on_the_host_and_edges_one_level_in_all_patches()
             for (number, pass) in prepared.passes.iter().enumerate() {
                 let decided = loaded.surface().decided(number, 0).iter();
                 for ((record, sides), patch) in decided.zip(&pass.sides).zip(&pass.patches) {
-                    let whole = abi::PATCH_HALF | 15 * abi::PATCH_EVEN_EDGE;
+                    let whole = abi::PATCH_HALF | (15 * abi::PATCH_EVEN_EDGE);
                     // Nothing is known of what is left out.
                     if patch.flags & whole != 0 || record.inside == 0.0 {
                         continue;

@@ -38,6 +38,8 @@ const uint BINDING_CAPTURE = 9u;
 const uint BINDING_INSTANCES = 10u;
 // Frame, binding: `View` records.
 const uint BINDING_VIEWS = 11u;
+// Pose, binding: `Point` records of the control vertices, where they are on the surface and their normals; behind them boxes, the least and the greatest place: around all, and around as many vertices as a workgroup has. Where the device decides.
+const uint BINDING_LIMITS = 12u;
 // How many tables a method may have of its own.
 const uint TABLES = 8u;
 // Behind these, how many tables control points have that are cached.
@@ -258,10 +260,14 @@ const uint DECIDE_BACK = 16u;
 const uint DECIDE_SMALL = 32u;
 // Flag of a `Decision`: by how far normals turn.
 const uint DECIDE_CURVATURE = 64u;
+// Flag of a `Decision`, for the shader that finds limits: only the box around all vertices is to be found.
+const uint DECIDE_BOX = 128u;
 // Flag of a `Decision`: rows of samples in a pixel, and columns; four bits.
 const uint DECIDE_ROWS_SHIFT = 8u;
 // In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
 const uint HULL_SPLINE = 2147483648u;
+// In a term of a limit: the number behind this flag is that of a list of vertices, of whose sum the weight is; on the host, of a face.
+const uint LIMIT_FACE = 2147483648u;
 // Invocations of a workgroup of the shader that decides.
 const uint DECIDE_INVOCATIONS = 64u;
 // The index of a pattern's vertex is i + (j << this), where (i, j) is its place on the pattern's lattice.
@@ -394,6 +400,8 @@ struct Decision {
     float level;
     // The picture in pixels.
     vec2 size;
+    // How many control vertices there are.
+    uint vertices;
 };
 
 // A point that is computed from control vertices.
@@ -489,7 +497,7 @@ struct Bases {
     // Texture coordinates, four a patch.
     uint texture;
     // The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
-    // and the jobs that compute points; behind these, where the device decides, `PatchSides`, the lists that these point into, and the faces around each vertex.
+    // and the jobs that compute points; behind these, where the device decides, `PatchSides`, the lists that these point into, and of the first pass what the limits and normals of vertices are made of.
     uint own[14];
     // How many patches there are.
     uint patches;

@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // What is drawn of each patch in each view: its levels, or nothing of it. An invocation a patch and view. Twin of `frame/decision.rs`.
 //
-// A level depends on the edge alone, whose ends are the same numbers in the same order for both patches there: so both have the same bits.
+// A level depends on the edge alone, whose ends are the same numbers in the same order for both patches there: so both have the same bits. They are the limits
+// that `limits.comp` has found.
 
 #include "lib/culling.glsl"
 #include "lib/deciding.glsl"
@@ -10,33 +11,19 @@
 
 layout(local_size_x = DECIDE_INVOCATIONS) in;
 
-// The normal of a vertex: of the corners of the faces around.
-vec3 normal_of(uint vertex) {
-    uint stars = bases.own[TABLES + CACHED_TABLES + 2u];
-    uint place = stars + words[stars + vertex];
-    uint count = words[place];
-    vec3 from = positions[vertex];
-    precise vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < count; ++i) {
-        precise vec3 a = positions[words[place + 1u + 2u * i]] - from;
-        precise vec3 b = positions[words[place + 2u + 2u * i]] - from;
-        sum += vec3(a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y);
-    }
-    precise vec3 normal = sum / max(sqrt(squared(sum)), 1e-37);
-    return normal;
-}
+layout(set = SET_POSE, binding = BINDING_LIMITS, scalar) readonly buffer LimitTable { Point limits[]; };
 
 // The level that an edge of the mesh is to have, seen from one view.
 float level_of_ends(uint seen, uint from, uint to) {
     if ((decision.flags & DECIDE_CURVATURE) != 0u) {
-        vec3 normal = normal_of(from);
-        vec3 other = normal_of(to);
+        vec3 normal = limits[from].normal;
+        vec3 other = limits[to].normal;
         precise float turned = 2.0 * atan(sqrt(squared(normal - other)), sqrt(squared(normal + other)));
         precise float level = turned / decision.measure;
         return level;
     }
-    vec3 a = positions[from];
-    vec3 b = positions[to];
+    vec3 a = limits[from].position;
+    vec3 b = limits[to].position;
     if ((decision.flags & DECIDE_SCREEN) != 0u) {
         mat4 clip = views[seen].clip_from_model;
         vec4 depth = row_of(clip, 3u);
@@ -70,12 +57,40 @@ float level_of_side(uint list, uint seen, uint eyes) {
     return min(greatest, decision.level);
 }
 
+shared uint beyond;
+
+// Whether in all views that are drawn together everything is outside, since the box around all vertices is: beyond one side. Then no patch need be looked at.
+// All invocations of a workgroup ask, each for a corner and a side.
+bool is_all_outside(uint seen, uint eyes) {
+    uint own = gl_LocalInvocationIndex;
+    bool outside = true;
+    for (uint eye = 0u; eye < eyes; ++eye) {
+        if (own == 0u) beyond = 63u;
+        barrier();
+        uint side = own >> 3u;
+        if (side < 6u) {
+            View view = views[seen + eye];
+            vec4 plane = side_of(view.clip_from_model, side);
+            float reach = abs(view.displacement.x) * sqrt(squared(plane.xyz));
+            Point box = limits[decision.vertices];
+            vec3 corner = mix(box.position, box.normal, notEqual(uvec3(own) & uvec3(1u, 2u, 4u), uvec3(0u)));
+            // What is no number is not outside.
+            bool out_there = inside_of(plane, row_of(view.clip_from_model, 3u), reach, corner) < 0.0;
+            if (!out_there) atomicAnd(beyond, ~(1u << side));
+        }
+        barrier();
+        outside = outside && beyond != 0u;
+        barrier();
+    }
+    return outside;
+}
+
 // Why a patch is not drawn in any of the views that are drawn together, whatever its levels; 0 where it is.
-uint culled_by(Patch record, PatchSides sides, uint seen, uint eyes) {
+uint culled_by(Patch record, PatchSides sides, bool all_outside, uint seen, uint eyes) {
     uint hull = sides.hull & ~HULL_SPLINE;
     bool outside = (decision.flags & DECIDE_FRUSTUM) != 0u && hull > 0u;
     bool small = (decision.flags & DECIDE_SMALL) != 0u && hull > 0u;
-    for (uint eye = 0u; eye < eyes && outside; ++eye) outside = is_outside(record, sides, hull, seen + eye);
+    for (uint eye = 0u; eye < eyes && outside && !all_outside; ++eye) outside = is_outside(record, sides, hull, seen + eye);
     if (outside) return DECIDE_FRUSTUM;
     for (uint eye = 0u; eye < eyes && small; ++eye) small = is_small(record, hull, seen + eye);
     return small ? DECIDE_SMALL : 0u;
@@ -83,13 +98,15 @@ uint culled_by(Patch record, PatchSides sides, uint seen, uint eyes) {
 
 void main() {
     uint number = gl_GlobalInvocationID.x;
-    if (number >= bases.patches) return;
     uint eyes = max(decision.flags >> FRAME_EYES_SHIFT & 63u, 1u);
     uint offset = gl_GlobalInvocationID.y * eyes;
     uint seen = decision.seen + offset;
+    bool all_outside = false;
+    if ((decision.flags & DECIDE_FRUSTUM) != 0u) all_outside = is_all_outside(seen, eyes);
+    if (number >= bases.patches) return;
     Patch record = patches[number];
     PatchSides sides = patch_sides[bases.own[TABLES + CACHED_TABLES] + number];
-    uint culled = culled_by(record, sides, seen, eyes);
+    uint culled = culled_by(record, sides, all_outside, seen, eyes);
     vec4 edges = vec4(0.0);
     float inside = 0.0;
     if (culled == 0u && (record.flags & PATCH_VACANT) == 0u) {

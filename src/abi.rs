@@ -111,6 +111,8 @@ structs! {
         level: f32,
         /// The picture in pixels.
         size: [f32; 2],
+        /// How many control vertices there are.
+        vertices: u32,
     }
 
     /// A point that is computed from control vertices.
@@ -206,7 +208,7 @@ structs! {
         /// Texture coordinates, four a patch.
         texture: u32,
         /// The method's own tables; of control points that are cached, behind eight of these, where the places of each patch's points begin, these places,
-        /// and the jobs that compute points; behind these, where the device decides, `PatchSides`, the lists that these point into, and the faces around each vertex.
+        /// and the jobs that compute points; behind these, where the device decides, `PatchSides`, the lists that these point into, and of the first pass what the limits and normals of vertices are made of.
         own: [u32; 14],
         /// How many patches there are.
         patches: u32,

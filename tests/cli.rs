@@ -53,6 +53,14 @@ fn usage_errors_exit_with_2() {
     for arguments in wrong {
         fails(arguments, 2);
     }
+    // It is no slip of the pen: whoever knows Vulkan is told why.
+    for command in ["render", "bench"] {
+        let words = fails(&[command, "--spacing", "fractional-odd"], 2);
+        assert!(
+            words.contains("n-gons") && words.contains("choose fractional-even"),
+            "{words}"
+        );
+    }
 }
 
 #[test]

@@ -38,6 +38,7 @@ fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static s
     match block {
         Block::PushConstants if module.starts_with("points.comp") => Some("PointStep"),
         Block::PushConstants if module.starts_with("decide.comp") => Some("Decision"),
+        Block::PushConstants if module.starts_with("limits.comp") => Some("Decision"),
         Block::PushConstants => Some("Frame"),
         Block::Buffer { binding } => match binding {
             abi::BINDING_TABLES => in_tables(shape),
@@ -46,6 +47,7 @@ fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static s
             abi::BINDING_CAPTURE => Some("Captured"),
             // Or the points of a cache, which are no structs.
             abi::BINDING_POINTS => inner(shape).1.map(|_| "Point"),
+            abi::BINDING_LIMITS => Some("Point"),
             abi::BINDING_POINT_ROWS => Some("PointRow"),
             abi::BINDING_POINT_TERMS => Some("PointTerm"),
             // Or what is drawn of patches that are cut into pieces, which has two numbers more.

@@ -200,6 +200,102 @@ fn hold(list: &DrawList, prepared: &Prepared) {
     assert!(u64::from(ring_batches.unwrap_or(0)) < counters.expect("it fits"));
 }
 
+/// All pieces of what is chosen, as they are in the whole list, and of the rest nothing but places.
+#[test]
+fn of_what_is_chosen_all_pieces_are_drawn_and_of_the_others_none() {
+    let model = model("ngons");
+    let prepared = prepare(&model);
+    let controls = prepared.controls(model.positions());
+    let tags = all_kinds(&prepared);
+    let options = options(200.0);
+    let whole = DrawList::new(&prepared, &options, None, cut(170.5), Some(&tags));
+    let whole = whole.expect("it fits");
+    let is_cut = |pass: usize, patch: u32| {
+        let levels = whole.levels(&prepared, pass, patch);
+        levels.is_some_and(|levels| levels.greatest() > 64.0)
+    };
+    let chosen = |pass: usize, patch: u32| patch % 3 == u32::from(is_cut(pass, patch));
+    let few = whole.clone().only(&prepared, chosen).expect("its own");
+    let [points, right] = [&few, &whole].map(|list| {
+        let surface = list.tessellate(&prepared, &controls);
+        surface.expect("it is drawn").points
+    });
+    assert!(points.len() < right.len());
+    let right = right.iter().filter(|p| chosen(p.pass as usize, p.patch));
+    assert!(right.eq(&points));
+    let (mut cut_up, mut left_out) = (0, 0);
+    for pass in 0..prepared.passes.len() {
+        let [own, all] = [&few, &whole].map(|list| list.sub_patches(pass));
+        assert_eq!(own.len(), all.len());
+        for (own, all) in own.iter().zip(all) {
+            assert_eq!((own.patch_number, own.piece), (all.patch_number, all.piece));
+            let is_chosen = chosen(pass, own.patch_number);
+            let levels = if is_chosen {
+                (all.edges, all.inside)
+            } else {
+                ([0.0; 4], 0.0)
+            };
+            assert_eq!((own.edges, own.inside), levels);
+            cut_up += usize::from(is_chosen && own.piece != 0);
+            left_out += usize::from(!is_chosen && own.piece != 0);
+        }
+    }
+    assert!(cut_up > 0 && left_out > 0, "{cut_up} {left_out}");
+    // What is not chosen takes no room in the ring.
+    let points = |list: &DrawList| -> u64 {
+        let slots = (0..prepared.passes.len()).flat_map(|pass| list.sub_patches(pass));
+        slots.map(|own| u64::from(own.slot)).sum()
+    };
+    assert!(points(&few) < points(&whole));
+}
+
+/// Where what is captured holds no whole patch, each batch has the triangles of its own pieces: together those of the patch, each once.
+#[test]
+fn a_patch_in_several_captured_batches_has_each_triangle_once() {
+    let model = model("ngons");
+    let prepared = prepare(&model);
+    let controls = prepared.controls(model.positions());
+    let tags = all_kinds(&prepared);
+    let options = SurfaceOptions {
+        capture_vertices: 1 << 13,
+        ..options(200.0)
+    };
+    let list = DrawList::new(&prepared, &options, None, cut(170.5), Some(&tags));
+    let list = list.expect("it fits");
+    let surface = list.tessellate(&prepared, &controls);
+    let surface = surface.expect("it is drawn");
+    let mut split = 0;
+    for pass in 0..prepared.passes.len() {
+        for patch in 0..prepared.passes[pass].patches.len() as u32 {
+            let own = surface.points.iter();
+            let own = own.filter(|p| (p.pass as usize, p.patch) == (pass, patch));
+            let uv: Vec<[f32; 2]> = own.map(|point| point.uv).collect();
+            let batches = list.batches().filter(|batch| batch.pass() == pass);
+            let batches: Vec<_> = batches.filter(|b| b.patches().contains(&patch)).collect();
+            let part = |batch: &hullform::frame::Batch<'_>| {
+                assert!(batch.vertices() <= options.capture_vertices);
+                let triangles = batch
+                    .triangles(&prepared, patch, &uv)
+                    .expect("all are there");
+                let mut corners: Vec<u32> = triangles.concat();
+                corners.sort_unstable();
+                corners.dedup();
+                let different = batch.different_vertices(&prepared, patch);
+                assert_eq!(corners.len(), different as usize);
+                triangles
+            };
+            let mut parts: Vec<[u32; 3]> = batches.iter().flat_map(part).collect();
+            let whole = list.triangles(&prepared, pass, patch, &uv);
+            let mut whole = whole.expect("all are there");
+            parts.sort_unstable();
+            whole.sort_unstable();
+            assert_eq!(parts, whole, "{pass} {patch}");
+            split += usize::from(batches.len() > 1);
+        }
+    }
+    assert!(split > 2, "{split}");
+}
+
 #[test]
 fn what_cannot_be_cut_into_pieces_is_refused() {
     let cube = model("cube");
@@ -333,7 +429,8 @@ fn devices_draw_pieces_as_the_cpu_has_them() {
         let list = loaded.draw_list(cut(level)).expect("it fits");
         let open = boundary_segments(&model, &list, &prepared);
         assert_eq!(edges_without_partner(&surface), open, "{what}");
-        assert!(list.has_sub_patches());
+        // Records of pieces are no decisions of the device.
+        assert!(list.has_sub_patches() && loaded.surface().decided(0, 0).is_empty());
         let twin = list.tessellate(&prepared, &controls).expect("it is drawn");
         assert_eq!(surface.points.len(), twin.points.len(), "{what}");
         assert_eq!(surface.triangles.len(), twin.triangles.len(), "{what}");

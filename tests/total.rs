@@ -449,8 +449,11 @@ fn depths_want_a_tag_a_vertex() {
             }
         }
     }
+    let outline = prepared(&model).next().expect("a method draws it").outline;
     for odd in ODD {
-        let tags = DepthTags::by_distance(&[Vec3::splat(odd)], Vec3::ZERO, odd, odd);
+        let vertices = vec![Vec3::splat(odd); count];
+        let tags = DepthTags::by_distance(&outline, &vertices, Vec3::ZERO, odd, odd);
+        let tags = tags.expect("a position a vertex");
         let range = 0.0..=DepthTags::DEEPEST;
         assert!(tags.depths.iter().all(|depth| range.contains(depth)));
     }

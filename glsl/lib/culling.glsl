@@ -36,15 +36,20 @@ float own_inside(PatchSides sides, vec4 plane, vec4 depth, float reach) {
     return greatest;
 }
 
+// A side of the picture, whose inside is in front of it: w + x, w - x, w + y, w - y, z, w - z.
+vec4 side_of(mat4 clip, uint side) {
+    vec4 depth = row_of(clip, 3u);
+    vec4 across = row_of(clip, side >> 1u);
+    return side == 4u ? across : (side & 1u) == 0u ? depth + across : depth - across;
+}
+
 // Whether a patch is outside of one side of the picture.
 bool is_outside(Patch record, PatchSides sides, uint hull, uint seen) {
     mat4 clip = views[seen].clip_from_model;
     vec4 depth = row_of(clip, 3u);
     float height = abs(views[seen].displacement.x);
     for (uint side = 0u; side < 6u; ++side) {
-        vec4 across = row_of(clip, side >> 1u);
-        // w + x, w - x, w + y, w - y, z, w - z.
-        vec4 plane = side == 4u ? across : (side & 1u) == 0u ? depth + across : depth - across;
+        vec4 plane = side_of(clip, side);
         float reach = height * sqrt(squared(plane.xyz));
         float own = own_inside(sides, plane, depth, reach);
         uint count = own < 0.0 ? hull : 0u;

@@ -34,6 +34,8 @@ constants! {
     BINDING_INSTANCES = 10;
     /// Frame, binding: `View` records.
     BINDING_VIEWS = 11;
+    /// Pose, binding: `Point` records of the control vertices, where they are on the surface and their normals; behind them boxes, the least and the greatest place: around all, and around as many vertices as a workgroup has. Where the device decides.
+    BINDING_LIMITS = 12;
     /// How many tables a method may have of its own.
     TABLES = 8;
     /// Behind these, how many tables control points have that are cached.
@@ -265,10 +267,14 @@ constants! {
     DECIDE_SMALL = 32;
     /// Flag of a `Decision`: by how far normals turn.
     DECIDE_CURVATURE = 64;
+    /// Flag of a `Decision`, for the shader that finds limits: only the box around all vertices is to be found.
+    DECIDE_BOX = 128;
     /// Flag of a `Decision`: rows of samples in a pixel, and columns; four bits.
     DECIDE_ROWS_SHIFT = 8;
     /// In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
     HULL_SPLINE = 0x8000_0000;
+    /// In a term of a limit: the number behind this flag is that of a list of vertices, of whose sum the weight is; on the host, of a face.
+    LIMIT_FACE = 0x8000_0000;
     /// Invocations of a workgroup of the shader that decides.
     DECIDE_INVOCATIONS = 64;
 

@@ -11,8 +11,8 @@ use crate::method::{Outline, Pass};
 use crate::tessellation::Spacing;
 use crate::tessellation::{Levels, levels_of_edges};
 
-/// By what the device decides about patches, in each view by itself. A level belongs to an edge of the mesh and depends on nothing but its ends, so both
-/// sides agree to the bit; where levels are not whole, spacing is fractional and nothing pops.
+/// By what the device decides about patches, in each view by itself. A level belongs to an edge of the mesh and depends on nothing but the limits of its ends
+/// ([`Outline::limits`]), so both sides agree to the bit; where levels are not whole, spacing is fractional and nothing pops.
 ///
 /// What is left out is left out before its control points are computed, and conservatively: pictures stay the same, pixel by pixel; but where
 /// [`back`](Self::back) says otherwise.
@@ -66,7 +66,14 @@ pub enum Metric {
 impl Decision {
     /// As shaders have it, for views from `view` on, of which `eyes` are decided for together.
     #[cfg(feature = "vulkan")]
-    pub(crate) fn record(&self, view: u32, eyes: u32, cut: Cut, max_level: u32) -> abi::Decision {
+    pub(crate) fn record(
+        &self,
+        view: u32,
+        eyes: u32,
+        cut: Cut,
+        max_level: u32,
+        vertices: u32,
+    ) -> abi::Decision {
         let (metric, measure, size) = match self.metric {
             Metric::Cut => (0, 1.0, [1.0; 2]),
             Metric::Distance(near) => (abi::DECIDE_DISTANCE, near, [1.0; 2]),
@@ -88,6 +95,7 @@ impl Decision {
             measure,
             level: cut.spacing.clamp(cut.level, max_level),
             size: self.small.map_or(size, |samples| samples.size),
+            vertices,
         }
     }
 
@@ -181,7 +189,11 @@ impl Decision {
             Metric::Curvature(degrees) => {
                 turn(outline, ends(edge), vertices) / degrees.to_radians()
             }
-            _ => self.level_of_ends(ends(edge).map(|end| vertices[end as usize]), cut, seen),
+            _ => self.level_of_ends(
+                ends(edge).map(|end| outline.limit(end, vertices)),
+                cut,
+                seen,
+            ),
         });
         levels.fold(cut.spacing.least(), f32::max).min(cut.level)
     }

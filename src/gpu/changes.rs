@@ -67,11 +67,11 @@ impl Edited {
         }
         let mut deciding = Vec::new();
         if decides == Decides::Device {
-            for (number, pass) in prepared.passes.iter().enumerate() {
-                let tables = deciding_tables(&prepared.outline, pass);
+            for (number, changes) in changes.iter_mut().enumerate() {
+                let tables = deciding_tables(prepared, number);
                 for (table, (new, old)) in tables.iter().zip(&self.deciding[number]).enumerate() {
                     let differing = differing(new, old);
-                    changes[number].extend(differing.map(|range| (DECIDING + table, range)));
+                    changes.extend(differing.map(|range| (DECIDING + table, range)));
                 }
                 deciding.push(tables);
             }

@@ -15,14 +15,15 @@ use crate::gpu::sets::STAGES;
 use crate::gpu::shaders::Embedded;
 use crate::gpu::{FrameSlot, Layout, Pose, Tables};
 
-/// The pipeline that decides about patches, the same for all methods.
+/// The pipelines that decide about patches, the same for all methods.
 #[derive(Debug)]
 pub struct DecidePipeline {
-    pipeline: vk::Pipeline,
+    limits: vk::Pipeline,
+    patches: vk::Pipeline,
 }
 
 impl DecidePipeline {
-    /// Builds it. The cache may go afterwards.
+    /// Builds them. The cache may go afterwards.
     ///
     /// # Errors
     /// Vulkan's own.
@@ -35,18 +36,28 @@ impl DecidePipeline {
         cache: vk::PipelineCache,
     ) -> Result<DecidePipeline> {
         // SAFETY: this function's contract.
-        let pipeline =
-            unsafe { compute_pipeline(device, layout, cache, "decide.comp", &Embedded)? };
-        Ok(DecidePipeline { pipeline })
+        let made = |name| unsafe { compute_pipeline(device, layout, cache, name, &Embedded) };
+        let limits = made("limits.comp")?;
+        match made("decide.comp") {
+            Ok(patches) => Ok(DecidePipeline { limits, patches }),
+            Err(error) => {
+                // SAFETY: it was just made, and nothing uses it.
+                unsafe { device.destroy_pipeline(limits, None) };
+                Err(error)
+            }
+        }
     }
 
-    /// Destroys it.
+    /// Destroys them.
     ///
     /// # Safety
     /// `device` made it, and no submitted command still uses it.
     pub unsafe fn destroy(self, device: &ash::Device) {
         // SAFETY: this function's contract.
-        unsafe { device.destroy_pipeline(self.pipeline, None) };
+        unsafe {
+            device.destroy_pipeline(self.limits, None);
+            device.destroy_pipeline(self.patches, None);
+        };
     }
 }
 
@@ -67,7 +78,7 @@ impl FrameSlot {
     /// Later draws wait for it. Binds a compute pipeline and sets 0 to 2, and pushes constants.
     ///
     /// # Errors
-    /// [`Misuse::OtherSurface`]; [`Misuse::DecidedByDevice`] where the host decides, and for patches that are left out where vertices are moved to show
+    /// [`Misuse::OtherSurface`]; [`Misuse::DecidedByDevice`] where the host decides, or the pose was made for that, and for patches that are left out where vertices are moved to show
     /// cracks; [`Misuse::View`], [`Misuse::Eyes`] for views that there are not; [`Misuse::Measure`], [`Misuse::Samples`], [`Misuse::Pictures`]. Nothing has
     /// been recorded then.
     ///
@@ -89,20 +100,36 @@ impl FrameSlot {
         pose.check(tables)?;
         self.check_owner(tables, list)?;
         self.check_decision(decision, decided)?;
+        if pose.limit_buffer().is_none() {
+            let what = "a pose that was made for decisions of the host";
+            return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
+        }
         let Decided { views, eyes } = decided;
         let bind = vk::PipelineBindPoint::COMPUTE;
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let readers = pose.readers();
         let passes = tables.prepared().passes.iter().enumerate();
+        let vertices = tables.prepared().vertex_count() as u32;
         // SAFETY: this function's contract.
         unsafe {
             let write = vk::AccessFlags::SHADER_WRITE;
             cmd_make_visible(device, cmd, readers | compute, compute, write);
-            device.cmd_bind_pipeline(cmd, bind, pipeline.pipeline);
+            if decision.metric != Metric::Cut || decision.frustum {
+                self.cmd_limits(
+                    device,
+                    cmd,
+                    layout,
+                    pipeline,
+                    (tables, pose),
+                    decision,
+                    list,
+                );
+            }
+            device.cmd_bind_pipeline(cmd, bind, pipeline.patches);
         }
         for (number, pass) in passes.filter(|(_, pass)| !pass.patches.is_empty()) {
             let sets = [tables.set(number), pose.set(), self.set(number)];
-            let record = decision.record(views.start, *eyes, list.cut(), pass.max_level);
+            let record = decision.record(views.start, *eyes, list.cut(), pass.max_level, vertices);
             let groups = (pass.patches.len() as u32).div_ceil(abi::DECIDE_INVOCATIONS);
             let constants = bytemuck::bytes_of(&record);
             // SAFETY: as above.
@@ -117,6 +144,50 @@ impl FrameSlot {
         unsafe { cmd_make_visible(device, cmd, compute, readers, read) };
         self.set_decided(list, views.end);
         Ok(())
+    }
+
+    /// Records the computation of limits and normals, and of the box around all vertices, once for all views.
+    ///
+    /// # Safety
+    /// As [`cmd_decide`](Self::cmd_decide), whose earlier reads of the pose have ended.
+    #[allow(clippy::too_many_arguments)] // As `cmd_decide`.
+    unsafe fn cmd_limits(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &DecidePipeline,
+        (tables, pose): (&Tables, &Pose),
+        decision: &Decision,
+        list: &DrawList,
+    ) {
+        let prepared = tables.prepared();
+        if prepared.passes.is_empty() {
+            return;
+        }
+        let bind = vk::PipelineBindPoint::COMPUTE;
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let (vertices, read) = (prepared.vertex_count() as u32, vk::AccessFlags::SHADER_READ);
+        // The first pass' tables tell of all vertices.
+        let sets = [tables.set(0), pose.set(), self.set(0)];
+        let limits = decision.record(0, 1, list.cut(), abi::HIGHEST_LEVEL, vertices);
+        let boxes = abi::Decision {
+            flags: limits.flags | abi::DECIDE_BOX,
+            ..limits
+        };
+        let groups = vertices.div_ceil(abi::DECIDE_INVOCATIONS);
+        let whole = decision.frustum.then_some((boxes, 1));
+        // SAFETY: this function's contract.
+        unsafe {
+            device.cmd_bind_pipeline(cmd, bind, pipeline.limits);
+            device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &sets, &[]);
+            for (record, groups) in [(limits, groups)].into_iter().chain(whole) {
+                let constants = bytemuck::bytes_of(&record);
+                device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
+                device.cmd_dispatch(cmd, groups, 1, 1);
+                cmd_make_visible(device, cmd, compute, compute, read);
+            }
+        }
     }
 
     /// # Errors

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use ash::vk;
 use glam::Vec3;
+use gpu_allocator::MemoryLocation;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::frame::{Residence, SurfaceOptions};
+use crate::frame::{Decides, Residence, SurfaceOptions};
 use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
 use crate::gpu::cached::Cache;
@@ -43,9 +44,11 @@ pub struct Pose {
     staging: Staging,
     positions: usize,
     points: usize,
+    limits: usize,
     /// How many control vertices its buffer holds.
     room: usize,
     residence: Residence,
+    decides: Decides,
     readers: vk::PipelineStageFlags,
     /// Vertices that were moved since the last upload.
     moved: BTreeMap<u32, [f32; 3]>,
@@ -53,7 +56,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Makes buffers and a descriptor set for control vertices in local units; of the options counts where control points live.
+    /// Makes buffers and a descriptor set for control vertices in local units; of the options count where control points live and who decides.
     /// Record [`cmd_upload`](Self::cmd_upload) before anything is drawn.
     ///
     /// # Errors
@@ -83,11 +86,13 @@ impl Pose {
             staging: Staging::default(),
             positions: 0,
             points: 0,
+            limits: 0,
             room: match tables.is_editable() {
                 true => positions.len() + positions.len() / 8 + SPARE,
                 false => positions.len(),
             },
             residence: options.residence,
+            decides: options.decides,
             readers: layout.readers(),
             moved: BTreeMap::new(),
             cache: cached.then(|| Cache::new(tables)).flatten(),
@@ -130,9 +135,23 @@ impl Pose {
             self.points = bound.add_target(maker, "points", size)?;
             self.staging.add(self.positions, vertices);
             self.staging.add(self.points, points);
+            // Sets have a buffer at each binding; one that nobody reads may be any.
+            let limits = match self.decides {
+                Decides::Host => self.positions,
+                Decides::Device => {
+                    let usage =
+                        vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+                    // And the boxes around them.
+                    let boxes = 1 + self.room.div_ceil(abi::DECIDE_INVOCATIONS as usize);
+                    let size = ((self.room + boxes) * size_of::<abi::Point>()) as u64;
+                    bound.add(maker, "limits", size, usage, MemoryLocation::GpuOnly)?
+                }
+            };
+            self.limits = limits;
             let set = vec![
                 Binding::storage(abi::BINDING_POSITIONS, self.positions),
                 Binding::storage(abi::BINDING_POINTS, self.points),
+                Binding::storage(abi::BINDING_LIMITS, limits),
             ];
             bound.describe(maker.device, maker.layout.pose_set(), &[set])?;
             self.staging.fill(maker.device, maker.allocator)
@@ -278,6 +297,7 @@ impl Pose {
         if prepared.vertex_count() > self.room || !cache_fits {
             let options = SurfaceOptions {
                 residence: self.residence,
+                decides: self.decides,
                 ..SurfaceOptions::default()
             };
             let positions = model.positions();
@@ -309,6 +329,12 @@ impl Pose {
     /// [`positions_changed`](Self::positions_changed).
     pub fn position_buffer(&self) -> vk::Buffer {
         self.bound.buffer(self.positions).raw()
+    }
+
+    /// What levels went by where the device decided: an [`abi::Point`] a control vertex, its limit ([`Outline::limits`](crate::method::Outline::limits)), and its normal where levels went by
+    /// curvature. For what an engine decides by itself, and for copies; None where the host decides.
+    pub fn limit_buffer(&self) -> Option<vk::Buffer> {
+        (self.decides == Decides::Device).then(|| self.bound.buffer(self.limits).raw())
     }
 
     /// # Errors

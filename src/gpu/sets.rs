@@ -53,6 +53,7 @@ pub(super) const TABLES: &[Slot] = &[
 pub(super) const POSE: &[Slot] = &[
     (abi::BINDING_POSITIONS, STORAGE, EVALUATING),
     (abi::BINDING_POINTS, STORAGE, EVALUATING),
+    (abi::BINDING_LIMITS, STORAGE, vk::ShaderStageFlags::COMPUTE),
 ];
 
 /// What a frame decides, and what the device writes in it.

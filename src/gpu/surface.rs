@@ -307,6 +307,11 @@ impl TessellatedSurface {
         self.pose.position_buffer()
     }
 
+    /// As [`Pose::limit_buffer`].
+    pub fn limit_buffer(&self) -> Option<vk::Buffer> {
+        self.pose.limit_buffer()
+    }
+
     /// As [`Pose::cmd_points`].
     ///
     /// # Safety

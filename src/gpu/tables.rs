@@ -194,10 +194,8 @@ impl Tables {
             numbers
         };
         let mut bytes = vec![0; bases_bytes as usize];
-        for (offset, pass) in (0u64..)
-            .step_by(BASES_STRIDE as usize)
-            .zip(&prepared.passes)
-        {
+        for (number, pass) in prepared.passes.iter().enumerate() {
+            let offset = BASES_STRIDE * number as u64;
             // On the host nobody reads them again, but for those that are edited.
             let cached = cached.as_mut().and_then(Iterator::next);
             let others = cached.map(|cached| match edited {
@@ -208,7 +206,7 @@ impl Tables {
             if decides == Decides::Device {
                 // Behind those of control points that are cached, be there any or not.
                 others.resize(abi::CACHED_TABLES as usize, Table::default());
-                let deciding = deciding_tables(&prepared.outline, pass);
+                let deciding = deciding_tables(prepared, number);
                 if let Some(edited) = edited.as_mut() {
                     edited.deciding.push(deciding.clone());
                 }

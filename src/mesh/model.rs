@@ -1,5 +1,6 @@
 //! A control mesh made ready for methods and GPU.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
@@ -13,7 +14,8 @@ use crate::mesh::{ControlMesh, Placement};
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(super) mesh: ControlMesh,
-    pub(super) topology: Topology,
+    /// Shared with what was prepared of it, until it is edited.
+    pub(super) topology: Arc<Topology>,
     pub(super) placement: Placement,
     /// A number that no other state of a model has.
     pub(super) revision: u64,
@@ -33,7 +35,7 @@ impl Model {
     /// Takes a mesh in.
     pub fn new(mesh: ControlMesh) -> Model {
         Model {
-            topology: Topology::new(&mesh),
+            topology: Arc::new(Topology::new(&mesh)),
             placement: mesh.placement(),
             revision: next_revision(),
             mesh,
@@ -52,6 +54,11 @@ impl Model {
 
     /// Its topology.
     pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// The same, for who keeps it.
+    pub(crate) fn shared_topology(&self) -> &Arc<Topology> {
         &self.topology
     }
 

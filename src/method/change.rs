@@ -147,7 +147,8 @@ impl Prepared {
 
     /// Takes over the faces and vertices of a model.
     pub(super) fn surround(&mut self, model: &Model) {
-        self.outline = Outline::new(model.topology());
+        let limits = self.outline.take_limits();
+        self.outline = Outline::new(model.topology(), limits);
         for pass in &mut self.passes {
             pass.needs[0] = model.mesh().vertex_count();
         }
@@ -187,6 +188,7 @@ impl Prepared {
                 own.needs = edited.needs;
             }
         }
+        self.outline.adopt_limits(&edited.outline);
         self.origin = edited.origin;
         self.plans = None;
     }

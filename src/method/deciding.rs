@@ -1,23 +1,43 @@
-//! What the device needs to decide about patches, see `glsl/decide.comp`.
+//! What the device needs to decide about patches, see `glsl/decide.comp` and `glsl/limits.comp`.
 
 use rustc_hash::FxHashMap;
 
 use crate::abi;
-use crate::method::{Outline, Pass, Table};
+use crate::method::{Outline, Prepared, Table};
 
-/// `PatchSides` of all patches of a pass, the lists of vertices that these point into, where the sides that patches have in common are there once, and the
-/// stars of all vertices.
-pub(crate) fn deciding_tables(outline: &Outline, pass: &Pass) -> [Table; 3] {
-    let mut lists: Vec<u32> = Vec::new();
-    let mut known: FxHashMap<u32, u32> = FxHashMap::default();
-    let mut list = |side: u32| {
+/// Lists of vertices, each there once.
+struct Lists<'a> {
+    outline: &'a Outline,
+    words: Vec<u32>,
+    known: FxHashMap<u32, u32>,
+}
+
+impl Lists<'_> {
+    /// Where the list of a side begins.
+    fn place(&mut self, side: u32) -> u32 {
+        let Lists {
+            outline,
+            words,
+            known,
+        } = self;
         *known.entry(side).or_insert_with(|| {
-            let first = lists.len() as u32;
+            let first = words.len() as u32;
             let vertices = outline.side(side);
-            lists.push(vertices.len() as u32);
-            lists.extend_from_slice(vertices);
+            words.push(vertices.len() as u32);
+            words.extend_from_slice(vertices);
             first
         })
+    }
+}
+
+/// `PatchSides` of all patches of a pass, the lists of vertices that these point into, where the sides that patches have in common are there once; and, of the
+/// first pass, what all vertices' limits and normals are made of.
+pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] {
+    let (outline, pass) = (&prepared.outline, &prepared.passes[number]);
+    let mut lists = Lists {
+        outline,
+        words: Vec::new(),
+        known: FxHashMap::default(),
     };
     let spline = if pass.is_spline { abi::HULL_SPLINE } else { 0 };
     let records = pass
@@ -25,32 +45,52 @@ pub(crate) fn deciding_tables(outline: &Outline, pass: &Pass) -> [Table; 3] {
         .iter()
         .enumerate()
         .map(|(patch, sides)| abi::PatchSides {
-            sides: sides.map(&mut list),
+            sides: sides.map(|side| lists.place(side)),
             hull: pass.hull(patch).len() as u32 | spline,
         });
     let records: Vec<abi::PatchSides> = records.collect();
+    let ends = match number {
+        0 => ends(prepared.vertex_count() as u32, &mut lists),
+        _ => Vec::new(),
+    };
     [
         Table::of(&records),
-        Table::of(&lists),
-        Table::of(&stars(outline, pass)),
+        Table::of(&lists.words),
+        Table::of(&ends),
     ]
 }
 
-/// For each vertex where its star begins, 0 for those that no side has; then the stars: how many faces there are around, and of each the vertex behind it
-/// and the one before.
-fn stars(outline: &Outline, pass: &Pass) -> Vec<u32> {
-    let vertices = pass.sides.iter().flatten();
-    let mut vertices: Vec<u32> = vertices
-        .flat_map(|&side| outline.side(side).iter().copied())
-        .collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let mut words = vec![0; vertices.last().map_or(0, |&last| last as usize + 1)];
-    for vertex in vertices {
+/// How many vertices there are, and for each where its own words begin. There, its star: how many faces there are around, and of each the vertex behind it
+/// and the one before; then the terms of its limit: how many, and of each where its value is from and its weight.
+///
+/// Each has room for the terms of a smooth vertex among quads, so that other tags move nothing else.
+fn ends(vertices: u32, lists: &mut Lists<'_>) -> Vec<u32> {
+    let outline = lists.outline;
+    let mut words = vec![0; 1 + vertices as usize];
+    words[0] = vertices;
+    for vertex in 0..vertices {
+        words[1 + vertex as usize] = words.len() as u32;
         let star = outline.star(vertex);
-        words[vertex as usize] = words.len() as u32;
         words.push(star.len() as u32);
         words.extend(star.iter().flatten());
+        let row = outline.limit_row(vertex);
+        words.push(row.len() as u32);
+        let most = match row.is_empty() && outline.is_on_surface() {
+            true => 0,
+            false => 1 + 2 * star.len(),
+        };
+        let behind = words.len() + 2 * most;
+        for &(source, weight) in row {
+            let source = match source & abi::LIMIT_FACE {
+                0 => source,
+                _ => {
+                    let side = outline.side_of_face(source & !abi::LIMIT_FACE);
+                    abi::LIMIT_FACE | lists.place(side)
+                }
+            };
+            words.extend([source, weight.to_bits()]);
+        }
+        words.resize(behind.max(words.len()), 0);
     }
     words
 }

@@ -145,6 +145,8 @@ impl Editable {
                 if changes.is_reconnected() {
                     self.prepared.surround(model);
                 }
+                let outline = &mut self.prepared.outline;
+                outline.edit_limits(model, changes);
                 let is_whole = patches != self.prepared.capacities();
                 self.prepared.follow(model, is_whole);
                 self.revision = model.revision();

@@ -61,6 +61,7 @@ mod editable;
 mod fas;
 mod flat;
 mod gregory;
+mod limits;
 mod macro_faces;
 mod options;
 mod origin;
@@ -93,6 +94,7 @@ use crate::mesh::{Model, Scheme};
 use crate::plan::Database;
 use crate::tessellation::Domain;
 use editable::Edits;
+use limits::Limits;
 use origin::Origin;
 
 #[cfg(feature = "vulkan")]
@@ -234,7 +236,8 @@ impl Method {
     /// With what all methods' have.
     fn completed(&self, mut prepared: Prepared, model: &Model) -> Prepared {
         prepared.method = self.name;
-        prepared.outline = Outline::new(model.topology());
+        let limits = Limits::new(model, self.contract.interpolates);
+        prepared.outline = Outline::new(model.topology(), limits);
         prepared.origin = Origin::new(model);
         let patches = prepared.passes.iter().map(|pass| &pass.patches[..]);
         let sides = outline::sides_of(model, patches);

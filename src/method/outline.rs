@@ -7,9 +7,10 @@ use smallvec::SmallVec;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
-use crate::mesh::Model;
 use crate::mesh::faces::Faces;
 use crate::mesh::topology::Topology;
+use crate::mesh::{ChangeSet, Model};
+use crate::method::limits::{self, Limits};
 use crate::method::patches::{self, Part};
 use crate::method::ptex::{Child, child};
 use crate::tessellation::Domain;
@@ -24,19 +25,21 @@ pub struct Outline {
     vertices: usize,
     /// Found when somebody asks.
     stars: OnceLock<Vec<Star>>,
+    limits: Limits,
 }
 
 type Star = SmallVec<[[u32; 2]; 4]>;
 
 impl Outline {
     /// The outline of a control mesh.
-    pub(super) fn new(topology: &Topology) -> Outline {
+    pub(super) fn new(topology: &Topology, limits: Limits) -> Outline {
         let ends = |edge| topology.edge(edge).vertices;
         Outline {
             edges: (0..topology.edge_count() as u32).map(ends).collect(),
             faces: topology.shared_faces().clone(),
             vertices: topology.vertex_count(),
             stars: OnceLock::new(),
+            limits,
         }
     }
 
@@ -79,6 +82,59 @@ impl Outline {
             Some(ends) => ends,
             None => self.faces.get(side - self.edges.len()),
         }
+    }
+
+    /// Where the control vertices at `vertices` are on the surface that is drawn, each by itself: on the limit, or where they are themselves for methods that
+    /// draw through them. Levels of edges go by these places. What they are made of is found the first time, in rayon's current pool.
+    ///
+    /// # Errors
+    /// [`Misuse::Count`] for other than one position a control vertex.
+    pub fn limits(&self, vertices: &[Vec3]) -> Result<Vec<Vec3>> {
+        self.check_count("positions", vertices.len())?;
+        let limit = |vertex| self.limit(vertex, vertices);
+        Ok((0..vertices.len() as u32).map(limit).collect())
+    }
+
+    /// The same of one vertex, of which there is one, and of as many positions as there are vertices.
+    pub(crate) fn limit(&self, vertex: u32, vertices: &[Vec3]) -> Vec3 {
+        match self.limits.row(vertex) {
+            [] => vertices[vertex as usize],
+            row => limits::sum(row, vertices, |face| self.faces.get(face as usize)),
+        }
+    }
+
+    /// Whether all vertices are on the surface themselves.
+    #[cfg(feature = "vulkan")]
+    pub(super) fn is_on_surface(&self) -> bool {
+        self.limits.is_empty()
+    }
+
+    /// The terms of a vertex' limit; see [`Limits::row`].
+    #[cfg(feature = "vulkan")]
+    pub(super) fn limit_row(&self, vertex: u32) -> &[(u32, f32)] {
+        self.limits.row(vertex)
+    }
+
+    /// The side that a face is.
+    #[cfg(feature = "vulkan")]
+    pub(super) fn side_of_face(&self, face: u32) -> u32 {
+        self.edges.len() as u32 + face
+    }
+
+    /// Brings the limits up to an edited model.
+    pub(super) fn edit_limits(&mut self, model: &Model, changes: &ChangeSet) {
+        self.limits.renew(model, changes);
+    }
+
+    /// The limits, for an outline of the same vertices.
+    pub(super) fn take_limits(&mut self) -> Limits {
+        std::mem::take(&mut self.limits)
+    }
+
+    /// Takes over those of another one.
+    #[cfg(feature = "vulkan")]
+    pub(super) fn adopt_limits(&mut self, other: &Outline) {
+        self.limits = other.limits.clone();
     }
 
     /// The star of a vertex: in each face around, in the order of faces, the vertex behind it and the one before. None where there is no such vertex.

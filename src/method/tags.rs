@@ -37,17 +37,28 @@ impl DepthTags {
         }
     }
 
-    /// View-dependent, by the distance from the eye: `greatest` up to the distance `near`, and one less whenever the distance doubles.
-    pub fn by_distance(vertices: &[Vec3], eye: Vec3, near: f32, greatest: f32) -> DepthTags {
+    /// View-dependent, by the distance of [limits](Outline::limits) from the eye: `greatest` up to the distance `near`, and one less whenever the distance doubles.
+    ///
+    /// # Errors
+    /// [`Misuse::Count`](crate::Misuse::Count) for other than one position a control vertex.
+    pub fn by_distance(
+        outline: &Outline,
+        vertices: &[Vec3],
+        eye: Vec3,
+        near: f32,
+        greatest: f32,
+    ) -> Result<DepthTags> {
         let farther = |vertex: &Vec3| {
             let distance = vertex.as_dvec3().distance(eye.as_dvec3());
             (distance / f64::from(near)).max(1.0).log2() as f32
         };
-        DepthTags::new(vertices.iter().map(|vertex| greatest - farther(vertex)))
+        let limits = outline.limits(vertices)?;
+        let depths = limits.iter().map(|limit| greatest - farther(limit));
+        Ok(DepthTags::new(depths))
     }
 
-    /// View-dependent, by what is seen: such that the segments of the edges around a vertex are at most `pixels` long in a picture of `size`
-    /// pixels, wherever they point to. What lies at the eye or behind it is refined to the end.
+    /// View-dependent, by what is seen of [limits](Outline::limits): such that the segments of the edges around a vertex are at most `pixels` long in a picture
+    /// of `size` pixels, wherever they point to. What lies at the eye or behind it is refined to the end.
     ///
     /// # Errors
     /// [`Misuse::Count`](crate::Misuse::Count) for other than one position a control vertex.
@@ -58,12 +69,12 @@ impl DepthTags {
         size: [f32; 2],
         pixels: f32,
     ) -> Result<DepthTags> {
-        outline.check_count("positions", vertices.len())?;
+        let limits = outline.limits(vertices)?;
         let clip = Mat4::from_cols_array_2d(&clip_from_model);
         let scale = |row: Vec4, size: f32| 0.5 * size * row.truncate().length();
         let pixels_per_unit = scale(clip.row(0), size[0]).max(scale(clip.row(1), size[1]));
         let tags = DepthTags::by_edges(outline, vertices.len(), |from, to| {
-            let [from, to] = [from, to].map(|vertex| vertices[vertex as usize]);
+            let [from, to] = [from, to].map(|vertex| limits[vertex as usize]);
             let w = clip.row(3).dot(from.extend(1.0)).max(f32::MIN_POSITIVE);
             (from.distance(to) * pixels_per_unit / w / pixels).log2()
         });

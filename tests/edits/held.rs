@@ -95,6 +95,8 @@ pub fn hold(
     what: &str,
     asks: impl Fn(u32) -> bool,
 ) {
+    let limits = |of: &Prepared| of.outline.limits(&model.positions()).expect(what);
+    assert!(limits(edited) == limits(fresh), "{what}: limits");
     let [own, right] = [edited, fresh].map(places);
     let controls = fresh.controls(model.positions());
     for ptex in 0..own.len().max(right.len()) {

@@ -4,10 +4,12 @@ use ash::vk;
 use glam::Vec3;
 use glam::camera::rh::proj::vulkan::perspective;
 use glam::camera::rh::view::look_at_mat4;
+use gpu_allocator::MemoryLocation;
+use hullform::abi;
 use hullform::frame::Seen;
 use hullform::gpu::{
-    Backend, Cut, DecidePipeline, Decided, Decides, Decision, Fill, Metric, Residence, Samples,
-    Shading, SurfaceOptions, View,
+    Backend, Buffer, Cut, DecidePipeline, Decided, Decides, Decision, Fill, Metric, Residence,
+    Samples, Shading, SurfaceOptions, View,
 };
 use hullform::host::{Owned, Shot};
 use hullform::mesh::Model;
@@ -175,6 +177,90 @@ fn the_device_decides_in_each_view_what_the_twin_does() {
             "{name}"
         );
     }
+    gpu.finish();
+}
+
+/// What the device went by, an [`abi::Point`] a vertex.
+fn limits_on_device(gpu: &Gpu, loaded: &Loaded<'_>, vertices: usize) -> Vec<abi::Point> {
+    let size = (vertices * size_of::<abi::Point>()) as u64;
+    let (device, usage) = (gpu.device.raw(), vk::BufferUsageFlags::TRANSFER_DST);
+    let location = MemoryLocation::GpuToCpu;
+    let from = loaded.surface().limit_buffer().expect("the device decides");
+    // SAFETY: all of one live device; the copy is waited for before the buffer is read and goes.
+    unsafe {
+        let mut memory = gpu.device.memory();
+        let copied = Buffer::new(device, &mut memory, "limits", size, usage, location);
+        let copied = copied.expect("it is small");
+        let copy = vk::BufferCopy::default().size(size);
+        let made = gpu.device.submit(|cmd| {
+            device.cmd_copy_buffer(cmd, from, copied.raw(), &[copy]);
+            Ok(())
+        });
+        made.expect("it is executed");
+        let points = bytemuck::cast_slice(copied.bytes()).to_vec();
+        copied.destroy(device, &mut memory);
+        points
+    }
+}
+
+#[test]
+fn limits_have_the_same_bits_as_on_the_host_and_edges_one_level_in_all_patches() {
+    let Some(gpu) = Gpu::open() else { return };
+    let (mut farther, mut shared) = (0, 0);
+    for name in ["hull", "ngons", "creased-torus", "pole-66"] {
+        let model = shapes::built_in(name);
+        let (vertices, radius) = (model.positions(), radius(&model));
+        let mut loaded = load(&gpu, &model, options(Residence::Ring));
+        loaded.decision.metric = Metric::Distance(0.3 * radius);
+        loaded.decision.frustum = true;
+        let cut = cut(29.7, Spacing::FractionalEven);
+        for view in views(2, radius) {
+            picture(&gpu, &mut loaded, cut, view);
+            let prepared = loaded.prepared();
+            let host = prepared.outline.limits(&vertices).expect("a position each");
+            let device = limits_on_device(&gpu, &loaded, vertices.len() + 1);
+            let is_used = |vertex: u32| !prepared.outline.star(vertex).is_empty();
+            let used = (0u32..)
+                .zip(&vertices)
+                .filter(|(vertex, _)| is_used(*vertex));
+            let around = |[low, high]: [Vec3; 2], (_, place): (u32, &Vec3)| {
+                [low.min(*place), high.max(*place)]
+            };
+            let [low, high] = used.fold([Vec3::MAX, Vec3::MIN], around);
+            // Behind them is the box around all.
+            let all = device[vertices.len()];
+            assert_eq!(
+                (all.position, all.normal),
+                (low.to_array(), high.to_array())
+            );
+            for (vertex, (own, right)) in device.iter().zip(&host).enumerate() {
+                let [own, right] = [own.position, right.to_array()].map(|p| p.map(f32::to_bits));
+                assert!(!is_used(vertex as u32) || own == right, "{name} {vertex}");
+                farther += usize::from(host[vertex].distance(vertices[vertex]) > 0.05);
+            }
+            // Parts of n-gons have whole levels, and what lies within faces is no edge.
+            let mut levels = std::collections::HashMap::<u32, u32>::new();
+            let edges = prepared.outline.edges().len() as u32;
+            for (number, pass) in prepared.passes.iter().enumerate() {
+                let decided = loaded.surface().decided(number, 0).iter();
+                for ((record, sides), patch) in decided.zip(&pass.sides).zip(&pass.patches) {
+                    let whole = abi::PATCH_HALF | (15 * abi::PATCH_EVEN_EDGE);
+                    // Nothing is known of what is left out.
+                    if patch.flags & whole != 0 || record.inside == 0.0 {
+                        continue;
+                    }
+                    for (&side, level) in sides.iter().zip(record.edges.map(f32::to_bits)) {
+                        assert!(side < edges, "{name}");
+                        let known = *levels.entry(side).or_insert(level);
+                        assert_eq!(known, level, "{name} {side}");
+                        shared += 1;
+                    }
+                }
+            }
+            shared -= levels.len();
+        }
+    }
+    assert!(farther > 100 && shared > 300, "{farther} {shared}");
     gpu.finish();
 }
 

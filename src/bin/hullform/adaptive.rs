@@ -10,7 +10,7 @@ use hullform::method::{DepthTags, Outline};
 /// What depth tags go by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Adaptive {
-    /// The distance from the eye: the full level up to this many units of the model, or up to the nearest control vertex, and half of it at
+    /// The distance from the eye: the full level up to this many units of the model, or up to the nearest limit of a vertex, and half of it at
     /// twice the distance.
     Distance(Option<f64>),
     /// The picture: segments of at most so many pixels.
@@ -93,12 +93,10 @@ impl Adaptive {
         seen: Seen,
     ) -> hullform::Result<DepthTags> {
         match self {
-            Adaptive::Distance(near) => Ok(DepthTags::by_distance(
-                vertices,
-                seen.eye,
-                full_up_to(near, vertices, seen),
-                level.log2(),
-            )),
+            Adaptive::Distance(near) => {
+                let near = full_up_to(near, outline, vertices, seen)?;
+                DepthTags::by_distance(outline, vertices, seen.eye, near, level.log2())
+            }
             Adaptive::Screen(pixels) => {
                 let clip = seen.clip_from_model.to_cols_array_2d();
                 DepthTags::by_screen(outline, vertices, clip, seen.size, pixels)
@@ -116,22 +114,38 @@ impl Adaptive {
     }
 
     /// What the device goes by, of control vertices in local units.
-    pub fn metric(self, vertices: &[Vec3], seen: Seen) -> Metric {
+    pub fn metric(
+        self,
+        outline: &Outline,
+        vertices: &[Vec3],
+        seen: Seen,
+    ) -> hullform::Result<Metric> {
         let Seen { size, .. } = seen;
-        match self {
-            Adaptive::Distance(near) => Metric::Distance(full_up_to(near, vertices, seen)),
+        Ok(match self {
+            Adaptive::Distance(near) => {
+                Metric::Distance(full_up_to(near, outline, vertices, seen)?)
+            }
             Adaptive::Screen(pixels) => Metric::Screen { pixels, size },
             Adaptive::Curvature(degrees) => Metric::Curvature(degrees),
-        }
+        })
     }
 }
 
-/// Up to where the level is full, in local units: so many units of the model, or where its nearest vertex is.
-fn full_up_to(near: Option<f64>, vertices: &[Vec3], seen: Seen) -> f32 {
-    let distances = vertices.iter().map(|vertex| vertex.distance(seen.eye));
-    let nearest = distances.fold(f32::INFINITY, f32::min);
-    let near = near.map_or(nearest, |near| (near / seen.scale) as f32);
-    near.clamp(f32::MIN_POSITIVE, f32::MAX)
+/// Up to where the level is full, in local units: so many units of the model, or where the nearest limit of a vertex is.
+fn full_up_to(
+    near: Option<f64>,
+    outline: &Outline,
+    vertices: &[Vec3],
+    seen: Seen,
+) -> hullform::Result<f32> {
+    let nearest = || -> hullform::Result<f32> {
+        let limits = outline.limits(vertices)?;
+        let distances = limits.iter().map(|limit| limit.distance(seen.eye));
+        Ok(distances.fold(f32::INFINITY, f32::min))
+    };
+    let given = near.map(|near| Ok((near / seen.scale) as f32));
+    let near = given.unwrap_or_else(nearest)?;
+    Ok(near.clamp(f32::MIN_POSITIVE, f32::MAX))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Who decides about patches for `render` and `bench`, and by what.
 
 use hullform::gpu::{Backend, Decides, Decision, Outcome, Samples, Slots};
+use hullform::method::Outline;
 use hullform::{Error, Result};
 use serde_json::{Value, json};
 
@@ -43,19 +44,37 @@ impl Wanted {
         self.adaptive.is_some() || self.culling != Culling::default()
     }
 
-    /// What the device decides by, as seen from somewhere, of control vertices in local units; `a_pixel` are the samples there.
-    pub fn decision(self, vertices: &[glam::Vec3], seen: Seen, a_pixel: u32) -> Decision {
+    /// The same in a picture whose pixels are drawn as squares of so many.
+    pub fn scaled(self, factor: f32) -> Wanted {
+        let scaled = |adaptive: Adaptive| adaptive.scaled(factor);
+        Wanted {
+            adaptive: self.adaptive.map(scaled),
+            ..self
+        }
+    }
+
+    /// What the device decides by, as seen from somewhere, of an outline with control vertices in local units; `a_pixel` are the samples there.
+    ///
+    /// # Errors
+    /// As [`Outline::limits`].
+    pub fn decision(
+        self,
+        outline: &Outline,
+        vertices: &[glam::Vec3],
+        seen: Seen,
+        a_pixel: u32,
+    ) -> Result<Decision> {
         let size = seen.size;
-        Decision {
-            metric: self
-                .adaptive
-                .map(|adaptive| adaptive.metric(vertices, seen))
-                .unwrap_or_default(),
+        let metric = self
+            .adaptive
+            .map(|adaptive| adaptive.metric(outline, vertices, seen));
+        Ok(Decision {
+            metric: metric.transpose()?.unwrap_or_default(),
             frustum: self.culling.frustum,
             back: self.culling.triangles == Cull::Back,
             small: self.culling.small.then_some(Samples { a_pixel, size }),
             seen_from: None,
-        }
+        })
     }
 }
 

@@ -21,7 +21,7 @@ use std::str::FromStr;
 pub use culling::Culling;
 pub use macro_faces::Macro;
 pub use standpoint::{Cull, Standpoint};
-pub use steps::{Backend, Residence, Steps};
+pub use steps::{Backend, Residence, SpacingParser, Steps};
 pub use tables::Tables;
 
 /// Options of every subcommand.

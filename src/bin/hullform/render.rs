@@ -5,7 +5,7 @@ mod statistics;
 
 pub use shading::Shading;
 
-use crate::adaptive::{Adaptive, Seen};
+use crate::adaptive::Seen;
 use crate::camera::{Camera, View};
 use crate::deciding::Wanted;
 use crate::drawing::{self, Drawing};
@@ -20,7 +20,7 @@ use hullform::ash::vk;
 use hullform::gpu::{self, Decides, Decision, DrawList, Fill, Residence, Slots, SurfaceOptions};
 use hullform::host::{Area, Bench, Encoding, OffscreenTarget, Shot, Style};
 use hullform::mesh::Model;
-use hullform::method::{Displacement, Prepared};
+use hullform::method::{Displacement, Outline, Prepared};
 use hullform::{Error, Result};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -363,7 +363,8 @@ impl Scene<'_> {
     }
 
     /// What the device decides by, where it does.
-    fn decision(&self, bench: &Bench, wanted: Wanted, view: &View) -> Decision {
+    fn decision(&self, by: (&Bench, &Outline), wanted: Wanted, view: &View) -> Result<Decision> {
+        let (bench, outline) = by;
         let vk::Extent2D { width, height } = bench.target().extent();
         let seen = Seen {
             clip_from_model: view.clip_from_model,
@@ -372,17 +373,13 @@ impl Scene<'_> {
             size: [width, height].map(|side| side as f32),
         };
         // In pixels that are drawn.
-        let scaled = |adaptive: Adaptive| adaptive.scaled(self.factor as f32);
-        let wanted = Wanted {
-            adaptive: wanted.adaptive.map(scaled),
-            ..wanted
-        };
-        let culled = wanted.decision(&self.model.positions(), seen, SAMPLES);
-        Decision {
+        let wanted = wanted.scaled(self.factor as f32);
+        let culled = wanted.decision(outline, &self.model.positions(), seen, SAMPLES)?;
+        Ok(Decision {
             // Vertices that are moved may turn triangles.
             back: culled.back && !self.amplify_cracks,
             ..culled
-        }
+        })
     }
 
     /// What becomes of its triangles.
@@ -434,7 +431,10 @@ fn draw_with(
     let mut drawing = Drawing::new(gpu, bench, scene.model, prepared, options, scene.points)?;
     match decides {
         Decides::Host => drawing.tags = tags.clone(),
-        Decides::Device => drawing.decision = scene.decision(bench, wanted, view),
+        Decides::Device => {
+            let by = (bench, &drawing.prepared().outline);
+            drawing.decision = scene.decision(by, wanted, view)?;
+        }
     }
     let list = drawing.draw_list(cut)?;
     let started = Instant::now();

@@ -1,6 +1,7 @@
 //! Carrying out an edit: all of it, or nothing.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
@@ -56,7 +57,7 @@ impl Model {
         for step in &edit.steps {
             self.set_tag(step, &mut retagged, &mut changes.moved);
         }
-        changes.faces = self.topology.retag(&self.mesh, &retagged);
+        changes.faces = Arc::make_mut(&mut self.topology).retag(&self.mesh, &retagged);
         changes.moved.sort_unstable();
         changes.moved.dedup();
         if !changes.moved.is_empty() {
@@ -100,6 +101,7 @@ impl Model {
         moved: &mut Vec<u32>,
     ) -> Rejoined {
         let Model { mesh, topology, .. } = self;
+        let topology = Arc::make_mut(topology);
         let indices = mesh.texture().map(|texture| texture.indices.clone());
         let before = mesh.shared_faces().clone();
         mesh.set_faces(&slots, |vertex| {

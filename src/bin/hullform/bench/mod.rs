@@ -52,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "L,M,...", value_delimiter = ',', default_value = "1,2,4,8,16,32", value_parser = options::level)]
     levels: Vec<f32>,
     /// Spacing of the vertices along an edge
-    #[arg(long, default_value = "equal")]
+    #[arg(long, default_value = "equal", value_parser = options::SpacingParser)]
     spacing: options::Spacing,
     /// Who cuts patches into triangles, one or several
     #[arg(

@@ -111,7 +111,8 @@ impl<'a> Subject<'a> {
             Decides::Host => drawing::nowhere(),
             Decides::Device => {
                 let seen = seen(model, arguments);
-                drawing.decision = arguments.wanted().decision(&model.positions(), seen, 1);
+                let (outline, vertices) = (&drawing.prepared().outline, model.positions());
+                drawing.decision = arguments.wanted().decision(outline, &vertices, seen, 1)?;
                 View {
                     clip_from_model: seen.clip_from_model.to_cols_array_2d(),
                     eye: seen.eye.to_array(),

@@ -1,6 +1,10 @@
 //! How finely surfaces are cut, by whom, and where their control points live.
 
-use clap::{Args, ValueEnum};
+use std::ffi::OsStr;
+
+use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, Args, Command, ValueEnum};
 
 use super::{Cutting, Spacing, level};
 
@@ -11,7 +15,7 @@ pub struct Steps {
     #[arg(long, default_value = "8", value_parser = level)]
     pub level: f32,
     /// Spacing of the vertices along an edge
-    #[arg(long, default_value = "equal")]
+    #[arg(long, default_value = "equal", value_parser = SpacingParser)]
     pub spacing: Spacing,
     /// Who cuts patches into triangles; all but the tessellator raise levels to powers of two
     #[arg(long, value_name = "WHO", default_value = "tessellator")]
@@ -19,6 +23,35 @@ pub struct Steps {
     /// Where control points live of patches that need more than their vertices
     #[arg(long, value_name = "WHERE", default_value = "ring")]
     pub residence: Residence,
+}
+
+/// Reads a spacing; tells why there is no fractional-odd, see the manual, *Tess levels*.
+#[derive(Clone)]
+pub struct SpacingParser;
+
+/// Vulkan's spacing that is refused.
+const FRACTIONAL_ODD: &str = "fractional-odd";
+
+impl TypedValueParser for SpacingParser {
+    type Value = Spacing;
+
+    fn parse_ref(
+        &self,
+        cmd: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Spacing, clap::Error> {
+        if value == FRACTIONAL_ODD {
+            let words = "--spacing fractional-odd: its short segments may begin at a corner, nearer than any plan goes, and beside n-gons no odd number is twice another; choose fractional-even\n";
+            return Err(clap::Error::raw(ErrorKind::ValueValidation, words).with_cmd(cmd));
+        }
+        EnumValueParser::<Spacing>::new().parse_ref(cmd, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let values = Spacing::value_variants().iter();
+        Some(Box::new(values.filter_map(Spacing::to_possible_value)))
+    }
 }
 
 /// Where control points live.

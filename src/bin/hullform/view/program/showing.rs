@@ -173,10 +173,10 @@ impl Program {
             }
             let (stage, viewer, context) = (&mut self.stage, &self.viewer, &self.context);
             let cut = Cut { level, ..full };
-            if let Err(error) = stage.decide(viewer, cut, &overlay, context) {
+            let decided = stage.decide(viewer, cut, &overlay, context);
+            if let Err(error) = decided.and_then(|_| stage.begin(viewer, level, context)) {
                 return self.fails(error);
             }
-            stage.begin(viewer, level, context);
             let work = stage.scene().map_or(0.0, |scene| scene.work());
             self.haste.begins(work, level >= full.level);
         }

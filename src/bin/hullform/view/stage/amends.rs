@@ -175,7 +175,7 @@ impl Stage {
                 drawn.few = Some(few);
             }
         }
-        self.begin_of(viewer, level, Some(amended.area), context);
+        self.begin_of(viewer, level, Some(amended.area), context)?;
         Ok(true)
     }
 

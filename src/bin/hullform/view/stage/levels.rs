@@ -9,7 +9,7 @@ use hullform::method::DepthTags;
 use super::{Stage, Staged, view};
 use crate::adaptive::Seen;
 use crate::capture::By;
-use crate::view::context::Context;
+use crate::view::context::{Context, Drawn};
 use crate::view::part::Part;
 use crate::view::viewer::Viewer;
 use crate::view::viewport::Area;
@@ -38,7 +38,7 @@ impl Staged {
             back: false,
             small: None,
             seen_from: None,
-            ..self.decision(viewer, part, side.viewport, samples)
+            ..self.decision(viewer, part, drawn, (side.viewport, samples))?
         };
         let eye = viewer.cutting_orbit().eye();
         let seen = view(viewer, eye, &self.model, side.viewport);
@@ -55,21 +55,22 @@ impl Staged {
         }
     }
 
-    /// What the device decides about patches in an area of the window.
+    /// What the device decides about patches of what is drawn, in an area of the window with so many samples a pixel.
     pub(super) fn decision(
         &self,
         viewer: &Viewer,
         part: &Part,
-        area: Area,
-        a_pixel: u32,
-    ) -> gpu::Decision {
+        drawn: &Drawn,
+        (area, a_pixel): (Area, u32),
+    ) -> Result<gpu::Decision> {
         let seen = cutting_eye(viewer, &self.model, area);
-        let decision = viewer.wanted().decision(&self.places(part), seen, a_pixel);
-        gpu::Decision {
+        let (outline, places) = (&drawn.surface.prepared().outline, self.places(part));
+        let decision = viewer.wanted().decision(outline, &places, seen, a_pixel)?;
+        Ok(gpu::Decision {
             // The second view is that of the frozen camera.
             seen_from: viewer.frozen.map(|_| 1),
             ..decision
-        }
+        })
     }
 
     /// A depth for each control vertex, by the camera that cuts.

@@ -99,8 +99,8 @@ pub struct Sliced {
 
 impl Stage {
     /// Begins a scene of what was decided, in the place of one that is not whole. What has no pipelines yet is not drawn.
-    pub fn begin(&mut self, viewer: &Viewer, level: f32, context: &Context) {
-        self.begin_of(viewer, level, None, context);
+    pub fn begin(&mut self, viewer: &Viewer, level: f32, context: &Context) -> Result<()> {
+        self.begin_of(viewer, level, None, context)
     }
 
     /// The same, of a part of the picture or all of it.
@@ -110,7 +110,7 @@ impl Stage {
         level: f32,
         part: Option<Area>,
         context: &Context,
-    ) {
+    ) -> Result<()> {
         let mut sides = Stage::sides(viewer);
         for side in &mut sides {
             side.scissor = part.map_or(side.scissor, |part| side.scissor.and(part));
@@ -137,7 +137,7 @@ impl Stage {
                 scene.views.push(Seen {
                     part,
                     recipe: side.recipe,
-                    ..staged.seen(viewer, drawn, side.viewport, context)
+                    ..staged.seen(viewer, drawn, side.viewport, context)?
                 });
                 // What is not measured yet is seen as it is.
                 if self.mapped.contains(&(side.recipe, staged.number)) {
@@ -171,6 +171,7 @@ impl Stage {
         self.parts
             .iter_mut()
             .for_each(|staged| staged.amends.clear());
+        Ok(())
     }
 
     /// Whether a scene is begun and not whole.
@@ -329,7 +330,7 @@ impl Stage {
 
 impl Staged {
     /// With what views a surface of it is prepared for an area of the window, and what is decided there.
-    fn seen(&self, viewer: &Viewer, drawn: &Drawn, area: Area, context: &Context) -> Seen {
+    fn seen(&self, viewer: &Viewer, drawn: &Drawn, area: Area, context: &Context) -> Result<Seen> {
         let eyes = std::iter::once(viewer.orbit).chain(viewer.frozen);
         let views = eyes.map(|orbit| view(viewer, orbit.eye(), &self.model, area));
         let part = viewer
@@ -340,12 +341,12 @@ impl Staged {
         let samples = context.mould().samples().as_raw();
         let limits = context.device().limits();
         let has_standard_samples = limits.standard_sample_locations != 0;
-        Seen {
+        let decision = decided.map(|part| self.decision(viewer, part, drawn, (area, samples)));
+        Ok(Seen {
             part: 0,
             recipe: 0,
             views: views.collect(),
-            decision: decided.map(|part| {
-                let decision = self.decision(viewer, part, area, samples);
+            decision: decision.transpose()?.map(|decision| {
                 // What is shown may be older than what is wanted, and have its cracks amplified: then no patch may be left out.
                 let whole = drawn.surface.options().amplify_cracks;
                 gpu::Decision {
@@ -356,7 +357,7 @@ impl Staged {
                     ..decision
                 }
             }),
-        }
+        })
     }
 }
 

@@ -14,6 +14,8 @@
 //! 11.3 functional specification, section 14.3), and so do we within a cell: vertex k of f is at the step nearest to k / f, which is exact where f is a power of
 //! two, and so are the steps from the other end. Its (u, v) is (cell + step) / n, rounded: three roundings away from it, less than half a step as
 //! long as 3 n 2^-24 < 2^-17. That holds up to n = 42, and there are 32 at most; so the nearest step is the one that was meant.
+//!
+//! Beside an n-gon a side has the vertices of two halves, at halves of steps. Such a side is one edge, n = 1, and what is divided by 1 is exact as it is.
 
 use std::ops::Range;
 
@@ -357,6 +359,10 @@ impl CellPlace {
         let record = &pass.patches[patch];
         let [w, h] = cells(record);
         let along = |t: f32, cells: u32| {
+            // Its vertices are exact, and beside an n-gon they are at half steps.
+            if cells == 1 {
+                return (0, t);
+            }
             let steps = (t * cells as f32 * abi::MACRO_STEPS as f32).round_ties_even() as u32;
             let cell = (steps / abi::MACRO_STEPS).min(cells - 1);
             let rest = (steps - cell * abi::MACRO_STEPS) as f32;

@@ -195,7 +195,7 @@ fn rectangles_by_node() {
         "--shading",
         "node",
     ];
-    compare("macro-rectangles-node", &[arguments, how].concat());
+    compare("macro-rectangles-node", &[&arguments[..], &how].concat());
 }
 
 /// A shape of a domain that a method draws: the first that it does not refuse, and the scheme.

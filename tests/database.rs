@@ -226,7 +226,7 @@ fn the_version_changes_when_plans_do() {
 }
 
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
-const FINGERPRINT: &str = "3: bb852168";
+const FINGERPRINT: &str = "4: ad9279d0";
 
 fn plan(path: &str) -> std::process::Command {
     hullform(&["plan", "builtin:hull", "--json", "--db", path])

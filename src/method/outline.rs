@@ -142,6 +142,11 @@ pub(super) fn sides(topology: &Topology, part: Part, patch: &abi::Patch) -> [u32
     let n = part.domain.corners();
     let turn = (patch.flags >> abi::PATCH_TURN_SHIFT & 3) as usize;
     let is_part = edges.len() != n;
+    if let (Child::Whole, &[a, b, c, d]) = (child(patch), edges) {
+        let mut sides = [a, b, c, d];
+        sides.rotate_left(turn);
+        return sides;
+    }
     // The part of an n-gon at a corner has half of the edges there, as its edges 0 and 3.
     let corner = part.corner as usize;
     let edges_of_part = [corner, corner + edges.len() - 1].map(|i| edges[i % edges.len()]);

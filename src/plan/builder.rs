@@ -189,10 +189,10 @@ impl Builder {
     fn quarter(&mut self, level: &Level<'_>, corner: u32, steps: &Steps) -> Tree {
         let (quarter, placed) = quarter(level, corner, self.options, steps);
         let first = self.rows.len() as u32;
-        for mask in quarter.masks(&placed) {
-            self.rows.push(|row| level.rows.add_to(row, &mask));
+        quarter.each_sum(&placed, |sum| {
+            self.rows.push(|row| level.rows.add_to(row, sum));
             self.bases.pushed(Some(corner));
-        }
+        });
         quarter.tree(&placed, first)
     }
 

@@ -1,6 +1,7 @@
 //! Plans as the bytes that the shaders read.
 
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
@@ -54,8 +55,8 @@ pub struct PackedPlans {
     pub rows: PackedRows,
     /// For each plan the number, among its stencils, of the first of two tangents near each corner; [`abi::NO_TANGENTS`] without any.
     pub nearby: Vec<[u32; 4]>,
-    /// The roots of strips that are there, by their nodes.
-    known_strips: FxHashMap<Box<[u32]>, u32>,
+    /// Where nodes begin that are there, children of one parent side by side.
+    known_nodes: FxHashMap<Box<[u32]>, u32>,
     /// Where lists begin that are there.
     known_lists: FxHashMap<Box<[u32]>, u32>,
 }
@@ -70,20 +71,16 @@ impl PackedPlans {
         if points > greatest {
             return Err(Error::Misuse(Misuse::PlanTooLarge { points, greatest }));
         }
+        let root = self.tree(&plan.nodes, plan);
         self.headers.push(PlanHeader {
             ring_size: plan.ring_size as u32,
             rows: self.rows.len() as u32,
-            root: self.nodes.len() as u32,
+            root,
             max_level: plan.max_level,
             counts: std::array::from_fn(|level| {
                 plan.stencils.count(plan.max_level.min(level as u32)) as u32
             }),
         });
-        let root = self.nodes.len() as u32;
-        for node in &plan.nodes {
-            let packed = self.pack(node, plan, root);
-            self.nodes.push(packed);
-        }
         match plan.stencils.in_pool() {
             Some(rows) => self.rows.append_pooled(rows)?,
             None => self.rows.append(&plan.packed_stencils())?,
@@ -104,39 +101,63 @@ impl PackedPlans {
         Ok(())
     }
 
-    /// Appends a node of its own, a B-spline of sixteen points, number x + 4 y; returns its number.
+    /// Appends a node that is a tree of its own, a B-spline of sixteen points, number x + 4 y, unless it is there; returns its number.
     pub fn push_bspline(&mut self, points: &[u32; 16]) -> u32 {
         let points = self.list(points);
-        self.nodes.push(abi::Node {
+        self.siblings(&[abi::Node {
             kind: NodeKind::Regular as u32 | abi::ORIGIN_NONE << abi::NODE_ORIGIN_SHIFT,
             points,
             sharpness: 0.0,
-        });
-        self.nodes.len() as u32 - 1
+        }])
     }
 
-    /// Appends the tree of an edge that a face evaluates with points of its own plan, unless it is there; returns its root.
+    /// Appends the tree of an edge that a face evaluates with points of its own plan, as far as it is not there; returns its root.
     pub fn push_strip(&mut self, plan: &Plan, strip: &Strip) -> u32 {
-        let nodes = strip.nodes();
-        let nodes: Vec<abi::Node> = nodes.iter().map(|node| self.pack(node, plan, 0)).collect();
-        let words = bytemuck::cast_slice(&nodes);
-        if let Some(&known) = self.known_strips.get(words) {
+        self.tree(&strip.nodes(), plan)
+    }
+
+    /// Appends what is not there of a tree, whose nodes are in breadth-first order; returns its root. Points are numbers within a plan, so trees of different
+    /// plans are often the same, and parts of trees even more so.
+    fn tree(&mut self, nodes: &[Node], plan: &Plan) -> u32 {
+        let children = nodes.iter().filter_map(|node| match node {
+            Node::Internal { children } => Some(*children as usize),
+            _ => None,
+        });
+        // Where siblings begin, in ascending order: first the root, which has none.
+        let starts: Vec<usize> = (0..nodes.len().min(1)).chain(children).collect();
+        let mut places = vec![0; starts.len()];
+        let mut end = nodes.len();
+        for (number, &start) in starts.iter().enumerate().rev() {
+            let siblings = nodes[start..end].iter();
+            let packed: SmallVec<[abi::Node; 4]> = siblings
+                .map(|node| {
+                    let of = |children: u32| starts.binary_search(&(children as usize));
+                    let place = |children| places[of(children).unwrap_or_default()];
+                    self.pack(node, plan, place)
+                })
+                .collect();
+            places[number] = self.siblings(&packed);
+            end = start;
+        }
+        places.first().copied().unwrap_or_default()
+    }
+
+    /// Appends siblings that are not there yet; returns where they begin.
+    fn siblings(&mut self, nodes: &[abi::Node]) -> u32 {
+        let words = bytemuck::cast_slice(nodes);
+        if let Some(&known) = self.known_nodes.get(words) {
             return known;
         }
-        let root = self.nodes.len() as u32;
-        self.known_strips.insert(words.into(), root);
-        self.nodes.extend(nodes.into_iter().map(|mut node| {
-            if node.kind & 15 == abi::NODE_INTERNAL {
-                node.points += root;
-            }
-            node
-        }));
-        root
+        let start = self.nodes.len() as u32;
+        self.known_nodes.insert(words.into(), start);
+        self.nodes.extend_from_slice(nodes);
+        start
     }
 
-    fn pack(&mut self, node: &Node, plan: &Plan, root: u32) -> abi::Node {
-        let (place, levels, points, base, sharpness) = match node {
-            Node::Internal { children } => (0, 0, root + children, None, 0.0),
+    /// A node; `place` tells where children are that begin so in the plan.
+    fn pack(&mut self, node: &Node, plan: &Plan, place: impl Fn(u32) -> u32) -> abi::Node {
+        let (corner, levels, points, base, sharpness) = match node {
+            Node::Internal { children } => (0, 0, place(*children), None, 0.0),
             Node::Regular { points, base, .. } => (0, 0, self.list(points), *base, 0.0),
             Node::Crease {
                 points,
@@ -167,7 +188,7 @@ impl PackedPlans {
             (number + 1) << abi::NODE_BASE_SHIFT | origin << abi::NODE_ORIGIN_SHIFT
         });
         abi::Node {
-            kind: node.kind() as u32 | place << 4 | levels << 8 | base,
+            kind: node.kind() as u32 | corner << 4 | levels << 8 | base,
             points,
             sharpness,
         }
@@ -195,14 +216,6 @@ impl PackedPlans {
             points: &self.points,
             rows: self.rows.view(),
         }
-    }
-
-    /// How many nodes there are of a kind.
-    pub fn count(&self, kind: NodeKind) -> usize {
-        self.nodes
-            .iter()
-            .filter(|node| node.kind & 15 == kind as u32)
-            .count()
     }
 
     /// The bytes of the quadtrees: nodes and their points.

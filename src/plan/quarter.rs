@@ -5,7 +5,6 @@
 //! lies, with sums over the face's ring in place of the quarter's.
 
 use crate::plan::tree::{Node, Tree, child_of_corner};
-use crate::subdivision::Mask;
 
 /// A quarter of more terms is of a pole.
 const LARGE: usize = 1 << 13;
@@ -36,15 +35,16 @@ impl Quarter {
         placed.tree(&self.tree, first)
     }
 
-    /// The sums over the vertices of the face's level 1.
-    pub fn masks<'a>(&'a self, placed: &'a Placed) -> impl Iterator<Item = Mask> + 'a {
+    /// Visits its sums, over the vertices of the face's level 1.
+    pub fn each_sum(&self, placed: &Placed, mut visit: impl FnMut(&[(u32, f64)])) {
+        let mut sum = Vec::new();
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
-        starts.zip(&self.ends).map(|(start, &end)| {
+        for (start, &end) in starts.zip(&self.ends) {
             let terms = self.terms[start..end].iter();
-            terms
-                .map(|&(place, weight)| (placed.ring[place as usize], weight))
-                .collect()
-        })
+            sum.clear();
+            sum.extend(terms.map(|&(place, weight)| (placed.ring[place as usize], weight)));
+            visit(&sum);
+        }
     }
 }
 

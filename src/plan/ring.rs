@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use crate::mesh::INFINITE_SHARPNESS;
 use crate::mesh::places::Places;
 use crate::mesh::sharpness::is_sharp;
-use crate::mesh::topology::Topology;
+use crate::mesh::topology::{FaceCorner, Topology};
 use crate::mesh::{CreaseMethod, SchemeOptions, TriangleSubdivision};
 use crate::plan::around::{BESIDE, EDGE_REACH, FACE_REACH, Listed, Start, few, surrounding_faces};
 use crate::plan::configuration::{Configuration, GIVEN, HUB_FACE, HUB_VERTEX};
@@ -97,7 +97,8 @@ impl Ring {
 
     /// The ring of a vertex: the faces around it. It begins in that face in which the configuration is the least. None of a vertex that no face has.
     pub fn of_vertex(topology: &Topology, vertex: u32) -> Option<Ring> {
-        let corners = few(topology.vertex_faces(vertex)).iter();
+        let corners = least_corners(topology, few(topology.vertex_faces(vertex)));
+        let corners = corners.into_iter();
         Ring::least(corners.map(|at| Ring::unmirrored(topology, at.face, at.corner, 1)))
     }
 
@@ -223,6 +224,23 @@ fn least_starts(topology: &Topology, face: u32) -> SmallVec<[Start; 8]> {
     least
 }
 
+/// Those corners at a vertex at which what is seen of the face and its two edges there is the least, see [`least_starts`].
+fn least_corners(topology: &Topology, corners: &[FaceCorner]) -> SmallVec<[FaceCorner; 8]> {
+    let key = |at: &FaceCorner| {
+        let edges = topology.face_edges(at.face);
+        let arity = edges.len();
+        let before = (at.corner as usize + arity - 1) % arity;
+        let [leaving, entering] = [edges[at.corner as usize], edges[before]]
+            .map(|edge| topology.edge(edge).sharpness.to_bits());
+        // Rings do not tell the arity of hubs.
+        let listed = topology.hub_of(at.face).map_or(arity, |_| usize::MAX);
+        (listed, leaving, entering)
+    };
+    let least = corners.iter().map(key).min();
+    let corners = corners.iter().filter(|at| Some(key(at)) == least);
+    corners.copied().collect()
+}
+
 /// Writes down a ring and numbers its vertices on the way.
 struct Walk<'a> {
     topology: &'a Topology,
@@ -233,6 +251,9 @@ struct Walk<'a> {
     words: Vec<u32>,
 }
 
+/// Most rings have no more sharp edges, which take five words each.
+const SHARP: usize = 12;
+
 impl Walk<'_> {
     /// Nothing yet, with room for faces that take so many words.
     fn new(topology: &Topology, start: Start, own: SmallVec<[u32; 8]>, faces: usize) -> Walk<'_> {
@@ -241,7 +262,7 @@ impl Walk<'_> {
             start,
             own,
             vertices: Places::default(),
-            words: Vec::with_capacity(6 + faces + 5),
+            words: Vec::with_capacity(6 + faces + 5 * SHARP),
         }
     }
 

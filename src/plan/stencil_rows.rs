@@ -66,48 +66,70 @@ fn bits_of(key: u32) -> u32 {
     }
 }
 
-/// Numbers of a row's weights in its set.
-type Numbers = SmallVec<[u16; 32]>;
 /// Words of a row.
 type Words = SmallVec<[u32; 32]>;
 
-/// Rows of so many weights have few that differ, which are looked through one by one.
+/// Rows of so many weights are told apart without a search.
 const SHORT: usize = 64;
 
-/// The different keys in ascending order, and the number of each key among them.
-fn numbered(keys: &[u32]) -> (Words, Numbers) {
-    if keys.len() > SHORT {
-        let mut set = Words::from_slice(keys);
+/// The key of zero, which most rows have several times.
+const ZERO: u32 = 1 << 31;
+
+/// Tells a row's weights apart: hands on the different keys, in ascending order, and for each weight the number of its key.
+fn numbered<R>(
+    weights: impl Iterator<Item = f32>,
+    count: usize,
+    then: impl FnOnce(&mut [u32], &[u16]) -> R,
+) -> R {
+    if count > SHORT {
+        let keys: Words = weights.map(ascending).collect();
+        let mut set = keys.clone();
         set.sort_unstable();
         set.dedup();
         let number = |key: &u32| set.binary_search(key).unwrap_or_default() as u16;
-        let numbers = keys.iter().map(number).collect();
-        return (set, numbers);
+        let numbers: Vec<u16> = keys.iter().map(number).collect();
+        return then(&mut set, &numbers);
     }
-    let mut met = Words::new();
-    let mut numbers = Numbers::new();
-    // Numbers plus 1, each in the first free slot from its key's own on.
-    let mut slots = [0u8; 2 * SHORT];
-    for &key in keys {
-        let mut slot = (key.wrapping_mul(0x9e37_79b9) >> 25) as usize;
-        while slots[slot] != 0 && met[usize::from(slots[slot]) - 1] != key {
-            slot = (slot + 1) % slots.len();
+    let mut keys = [0; SHORT];
+    let all = keys.iter_mut().zip(weights);
+    all.for_each(|(key, weight)| *key = ascending(weight));
+    let keys = &keys[..count];
+    // Key and place of those that are not zero.
+    let mut others = [0u64; SHORT];
+    let mut met = 0;
+    for (place, &key) in (0..).zip(keys) {
+        others[met % SHORT] = u64::from(key) << 8 | place;
+        met += usize::from(key != ZERO);
+    }
+    let others = &mut others[..met];
+    others.sort_unstable();
+    let has_zero = met < count;
+    let (mut set, mut next) = ([0; SHORT], 0);
+    let mut push = |key: u32| {
+        set[next % SHORT] = key;
+        next += 1;
+        next as u16 - 1
+    };
+    let mut numbers = [0; SHORT];
+    let (mut before, mut number) = (ZERO, 0);
+    let mut zero = None;
+    for &mut entry in others {
+        let key = (entry >> 8) as u32;
+        if key != before {
+            if has_zero && zero.is_none() && key > ZERO {
+                zero = Some(push(ZERO));
+            }
+            (before, number) = (key, push(key));
         }
-        if slots[slot] == 0 {
-            met.push(key);
-            slots[slot] = met.len() as u8;
+        numbers[entry as usize % SHORT] = number;
+    }
+    if has_zero {
+        let zero = zero.unwrap_or_else(|| push(ZERO));
+        for (number, _) in numbers.iter_mut().zip(keys).filter(|at| *at.1 == ZERO) {
+            *number = zero;
         }
-        numbers.push(u16::from(slots[slot]) - 1);
     }
-    let mut ranks = [0; SHORT];
-    for (rank, &key) in ranks.iter_mut().zip(&met) {
-        *rank = met.iter().filter(|&&other| other < key).count() as u16;
-    }
-    for number in &mut numbers {
-        *number = ranks[usize::from(*number)];
-    }
-    met.sort_unstable();
-    (met, numbers)
+    then(&mut set[..next], &numbers[..count])
 }
 
 /// Which of the widths numbers of a set have.
@@ -176,25 +198,27 @@ impl StencilRows {
         known: &mut KnownRows,
     ) {
         let weights = weights.map(|weight| weight as f32 + 0.0);
-        let mut pattern = DENSE;
-        let set: Words = if dense {
-            weights.map(f32::to_bits).collect()
+        let [set, pattern] = if dense {
+            let set: Words = weights.map(f32::to_bits).collect();
+            [known.sets.number(&mut self.sets, &set), DENSE]
         } else {
-            let keys: Words = weights.map(ascending).collect();
-            let (mut set, numbers) = numbered(&keys);
-            set.iter_mut().for_each(|key| *key = bits_of(*key));
-            let width = width_for(set.len());
-            let mut packed = Words::new();
-            packed.push(pattern_head(self.ring_size, width));
-            let bits = WIDTHS[width as usize];
-            for numbers in numbers.chunks((32 / bits) as usize) {
-                let word = |word: u32, &number: &u16| word << bits | u32::from(number);
-                packed.push(numbers.iter().rev().fold(0, word));
-            }
-            pattern = known.patterns.number(&mut self.patterns, &packed);
-            set
+            let ring_size = self.ring_size;
+            numbered(weights, ring_size, |set, numbers| {
+                set.iter_mut().for_each(|key| *key = bits_of(*key));
+                let width = width_for(set.len());
+                let mut packed = Words::new();
+                packed.push(pattern_head(ring_size, width));
+                let bits = WIDTHS[width as usize];
+                for numbers in numbers.chunks((32 / bits) as usize) {
+                    let word = |word: u32, &number: &u16| word << bits | u32::from(number);
+                    packed.push(numbers.iter().rev().fold(0, word));
+                }
+                [
+                    known.sets.number(&mut self.sets, set),
+                    known.patterns.number(&mut self.patterns, &packed),
+                ]
+            })
         };
-        let set = known.sets.number(&mut self.sets, &set);
         let corner = corner.map_or(0, |corner| corner + 1);
         self.rows
             .push([set | corner << SHIFT, pattern | level << SHIFT]);

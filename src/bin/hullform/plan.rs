@@ -132,9 +132,13 @@ fn as_text(facts: &Map<String, Value>) -> String {
     facts.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// How many plans there would be of insides, if a face could not be turned or mirrored to have that of another.
+/// So many faces at a vertex, or corners of a face, are listed in rings as a whole.
+const FEW: usize = 64;
+
+/// How many plans there would be of insides, if a face could not be turned or mirrored to have that of another. Where very many faces meet each way in which a plan
+/// is turned counts as one: rings that list all there are of the square of their number.
 fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
-    let offsets = model.mesh().ptex_offsets();
+    let (topology, offsets) = (model.topology(), model.mesh().ptex_offsets());
     let planned = prepared.passes.iter().filter(|pass| pass.cached.is_some());
     // Patches of one plan, turned and mirrored alike, are alike.
     let alike = planned.flat_map(|pass| {
@@ -142,12 +146,20 @@ fn plans_without_sharing(model: &Model, prepared: &Prepared) -> usize {
         let is_new = move |patch: &&Patch| seen.insert((patch.plan, patch.flags));
         pass.patches.iter().filter(is_new)
     });
-    let rings = alike.filter_map(|patch| {
+    let mut many = 0;
+    let mut configurations = HashSet::new();
+    for patch in alike {
         let face = offsets.partition_point(|&first| first <= patch.ptex) - 1;
-        Ring::from_corner(model.topology(), face as u32, patch.ptex - offsets[face])
-    });
-    let all: HashSet<_> = rings.map(|ring| ring.configuration).collect();
-    all.len()
+        let vertices = topology.face(face as u32);
+        let mut around = vertices.iter().map(|&vertex| topology.vertex_faces(vertex));
+        if vertices.len() > FEW || around.any(|faces| faces.len() > FEW) {
+            many += 1;
+            continue;
+        }
+        let ring = Ring::from_corner(topology, face as u32, patch.ptex - offsets[face]);
+        configurations.extend(ring.map(|ring| ring.configuration));
+    }
+    configurations.len() + many
 }
 
 /// What there is to tell about macro faces.

@@ -65,25 +65,24 @@ impl Topology {
             } - 1;
             sides.push([edges[corner as usize], edges[before]]);
         }
-        // From the face that no other leads to, or anywhere.
-        let Some(&[_, first]) = sides
-            .iter()
-            .find(|[_, before]| !sides.iter().any(|[next, _]| next == before))
-            .or(sides.first())
-        else {
+        let Some(&[next, before]) = sides.first() else {
             return true;
         };
-        let mut at = first;
-        for met in 0..sides.len() {
-            let Some(&[next, _]) = sides.iter().find(|[_, before]| *before == at) else {
-                return false;
-            };
-            at = next;
-            if at == first {
-                return met + 1 == sides.len();
+        // From the first face around, and where that does not lead back, from its other side the other way.
+        let mut met = 1;
+        for (side, mut at, end) in [(0, next, before), (1, before, next)] {
+            while let Some(&own) = sides.iter().find(|own| own[1 - side] == at) {
+                if at == end {
+                    return met == sides.len();
+                }
+                at = own[side];
+                met += 1;
+                if met > sides.len() {
+                    return false;
+                }
             }
         }
-        true
+        met == sides.len()
     }
 
     fn is_interpolated_corner(&self, vertex: u32) -> bool {

@@ -88,6 +88,12 @@ pub fn agree(
     slots: &mut Vec<u32>,
 ) {
     let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
+    // Where all patches are here anyway, none is to be added.
+    if slots.len() == patches.records.len() {
+        edges().for_each(|&edge| agreed[edge as usize] = false);
+        now.iter().for_each(|&edge| agreed[edge as usize] = true);
+        return;
+    }
     let before: Vec<bool> = edges().map(|&edge| agreed[edge as usize]).collect();
     edges().for_each(|&edge| agreed[edge as usize] = false);
     now.iter().for_each(|&edge| agreed[edge as usize] = true);
@@ -169,22 +175,18 @@ fn pairs(
 /// So many pairs are looked at between two looks at what is known.
 const AT_A_TIME: usize = 1 << 13;
 
-/// Pairs of points that were found to be the same: stretches side by side share most of theirs. The last ones.
+/// Pairs of points that were found to be the same: stretches side by side share most of theirs. Of each point of the first side, by the last digits of its
+/// number, the last pair.
 #[derive(Default)]
 struct Same {
     pairs: [Option<[u32; 2]>; 32],
-    next: usize,
 }
 
 impl Same {
     /// Whether a pair is one of them. If it is not, it is to be looked at, and counts as one from now on: the first that differs ends it all.
     fn is_met(&mut self, pair: [u32; 2]) -> bool {
-        let is_met = self.pairs.contains(&Some(pair));
-        if !is_met {
-            self.pairs[self.next % 32] = Some(pair);
-            self.next += 1;
-        }
-        is_met
+        let known = &mut self.pairs[pair[0] as usize % 32];
+        known.replace(pair) == Some(pair)
     }
 }
 

@@ -16,7 +16,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::mesh::topology::{Hub, Topology};
 use crate::method::quadtree::hubs::{self, hub_of};
 use crate::method::quadtree::in_ring::{InRing, List, Plain};
-use crate::method::quadtree::irregular::{Irregular, Irregulars};
+use crate::method::quadtree::irregular::{Irregular, Irregulars, Record};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, vertex_rows};
 use crate::method::quadtree::sides::{lines, points};
@@ -95,7 +95,13 @@ impl Borders {
             agreed[edge as usize] || ends.iter().all(|&vertex| is_plain(smooth, vertex))
         };
         let records = || slots.iter().map(|&slot| &patches.records[slot as usize]);
-        let lines = records().flat_map(|record| {
+        // Of most faces around which all is smooth no edge needs a plan.
+        let is_all_settled = |record: &Record| {
+            let edges = topology.face_edges(record.part.face);
+            record.is_smooth && edges.iter().all(|&edge| is_settled(edge))
+        };
+        let unsettled = records().filter(|record| !is_all_settled(record));
+        let lines = unsettled.flat_map(|record| {
             let lines = lines(topology, record.part, record.turn(topology));
             lines.into_iter().map(|(line, ..)| line)
         });
@@ -436,12 +442,12 @@ impl Builder<'_> {
     /// Where a list of places in a patch's ring of this size begins.
     fn list(&mut self, ring: usize, places: &[u32]) -> u32 {
         let (all, first) = (&mut self.places, self.first_place);
-        let mut words = Vec::new();
+        let mut words = List::new();
         places::push(&mut words, ring, places.iter().copied());
         *self
             .borders
             .lists
-            .entry(List::from_vec(words))
+            .entry(words)
             .or_insert_with_key(|words: &List| {
                 let start = first + all.len() as u32;
                 all.extend_from_slice(words);

@@ -17,19 +17,14 @@ pub fn words(ring: usize, count: usize) -> usize {
 }
 
 /// Appends a list of places in a ring of this size.
-pub fn push(words: &mut Vec<u32>, ring: usize, places: impl IntoIterator<Item = u32>) {
+pub fn push(words: &mut impl Extend<u32>, ring: usize, places: impl IntoIterator<Item = u32>) {
     let bits = bits(ring);
-    let mut shift = 32;
-    for place in places {
-        if shift + bits > 32 {
-            words.push(0);
-            shift = 0;
-        }
-        if let Some(word) = words.last_mut() {
-            *word |= place << shift;
-        }
-        shift += bits;
-    }
+    let mut places = places.into_iter();
+    words.extend(std::iter::from_fn(|| {
+        let first = places.next()?;
+        let rest = (1..32 / bits).zip(places.by_ref());
+        Some(rest.fold(first, |word, (i, place)| word | place << (bits * i)))
+    }));
 }
 
 /// Place `i` of the list that begins with `words`.

@@ -33,7 +33,7 @@ const REGULAR: usize = 0;
 const SHORT: usize = 1;
 const LONG: usize = 2;
 /// So many parts are on their way at a time.
-const AT_A_TIME: usize = 1 << 13;
+const AT_A_TIME: usize = 1 << 11;
 /// So many are few.
 const FEW: usize = 1 << 6;
 
@@ -63,6 +63,8 @@ pub struct Planner {
     spares: bool,
     /// Whether plans and borders are kept for edits.
     keeps: bool,
+    /// Memory for the numbers of control vertices of one patch after another.
+    controls: Vec<u32>,
 }
 
 /// What is to be planned.
@@ -147,6 +149,7 @@ impl Planner {
             free: Default::default(),
             spares: false,
             keeps,
+            controls: Vec::new(),
         }
     }
 
@@ -288,7 +291,8 @@ impl Planner {
         };
         let slot = self.slot(passes, number, part.ptex, log);
         let (place, pass) = (slot as usize, &mut passes[number]);
-        let mut controls = Vec::new();
+        let mut controls = std::mem::take(&mut self.controls);
+        controls.clear();
         match &surroundings {
             Surroundings::Regular(vertices) => controls.extend_from_slice(vertices),
             Surroundings::Smooth(_, ring) => {
@@ -301,6 +305,7 @@ impl Planner {
             }
         }
         patch.controls = self.keep(number, pass, &controls, log);
+        self.controls = controls;
         if let Some(own) = pass.sides.get_mut(place) {
             *own = sides(topology, part, &patch);
         }

@@ -165,13 +165,13 @@ fn inside(pass: &Pass, patch: usize, uv: Vec2) -> Leaf {
     leaf.expect("borders have the roots of packed trees")
 }
 
-/// The cell at (u, v) of a patch. Plans are numbered as they are packed, by their roots.
+/// The cell at (u, v) of a patch. Plans are numbered as they are packed, by where their rows begin; trees may be the same.
 pub(super) fn cell(pass: &Pass, patch: usize, uv: Vec2) -> Option<Cell> {
     let Leaf { kind, scale, .. } = inside(pass, patch, uv);
-    let roots = view::roots(pass);
-    let root = Border::of(pass, patch).used(0).root;
+    let all = view::rows_of_insides(pass);
+    let rows = Border::of(pass, patch).used(0).rows;
     Some(Cell {
-        plan: roots.range(..root).count() as u32,
+        plan: all.range(..rows).count() as u32,
         kind: *NODE_KINDS.get(kind as usize)?,
         depth: scale.log2() as u32,
     })

@@ -64,14 +64,14 @@ impl<'a> Border<'a> {
     }
 }
 
-/// The roots of all plans of insides.
-pub(super) fn roots(pass: &Pass) -> BTreeSet<u32> {
+/// Where the rows of all plans of insides begin.
+pub(super) fn rows_of_insides(pass: &Pass) -> BTreeSet<u32> {
     let records: &[abi::Border] = bytemuck::cast_slice(&pass.tables[BORDERS]);
     let uses: &[abi::Use] = bytemuck::cast_slice(&pass.tables[USES]);
-    let roots = records
+    let rows = records
         .iter()
-        .map(|record| uses[record.uses[0] as usize].root);
-    roots.collect()
+        .map(|record| uses[record.uses[0] as usize].rows);
+    rows.collect()
 }
 
 /// Where the points of each use end at a level.

@@ -94,7 +94,7 @@ fn is_sharpness(sharpness: f32) -> bool {
     sharpness.is_finite() && sharpness >= 0.0
 }
 
-/// Children lie behind their parents, each has one, and none is deeper than a walk goes.
+/// Nodes are in breadth-first order, the children of each parent side by side, and none is deeper than a walk goes.
 fn is_tree(plan: &Plan, children: u32) -> bool {
     let count = plan.nodes.len();
     let mut depths: Vec<Option<u32>> = vec![None; count];
@@ -107,6 +107,7 @@ fn is_tree(plan: &Plan, children: u32) -> bool {
             .all(|&point| (point as usize) < plan.stencils.len());
         known && base.is_none_or(|base| is_base(plan, base))
     };
+    let mut next = 1;
     for (number, node) in plan.nodes.iter().enumerate() {
         let Some(depth) = depths[number].filter(|&depth| depth <= DEEPEST) else {
             return false;
@@ -115,12 +116,12 @@ fn is_tree(plan: &Plan, children: u32) -> bool {
             Node::Internal { children: first } => {
                 let first = *first as usize;
                 let own = first..first.saturating_add(children as usize);
-                let free = first > number && own.end <= count;
-                let free = free && depths[own.clone()].iter().all(Option::is_none);
-                if free {
+                let follows = first == next && own.end <= count;
+                if follows {
+                    next = own.end;
                     depths[own].fill(Some(depth + 1));
                 }
-                free
+                follows
             }
             Node::Regular {
                 points: own, base, ..

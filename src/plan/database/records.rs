@@ -16,7 +16,7 @@ use std::ops::Range;
 /// What a database begins with. The line breaks show whether something took it for text.
 pub const MAGIC: [u8; 16] = *b"hullform plans\r\n";
 /// Of the layout *and* of what builds plans: a file of another version is of no use. `tests/database.rs` tells when it must change.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// What a record begins with. Programs of two versions may have one file open, which the newer has begun anew.
 const RECORD: u32 = 0x4e41_4c00 + VERSION;
 /// The bytes of the header.

@@ -5,9 +5,6 @@
 //! sides lie offset to one another, as those of quartets may, the edges of both have one level, and so on: these edges are a *line*. Its level is the greatest
 //! of those of its edges by themselves. So it depends on what its edges alone depend on, and all patches along it agree to the bit; no patch is coarser
 //! than it would be by itself.
-//!
-//! Where a line has two ends, they are vertices of the mesh, and where it goes through a corner of a patch that is no matter: levels belong to edges, not to
-//! vertices.
 
 use std::collections::BTreeMap;
 

@@ -5,7 +5,9 @@ mod common;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use common::meshes::{cases, manifold, wild};
-use hullform::frame::{Backend, Cut, Decides, DrawList, Residence, SurfaceOptions, Tessellated};
+use hullform::frame::{
+    Backend, Cut, DrawList, Residence, SurfaceOptions, Tessellated, TessellatedPoint,
+};
 use hullform::mesh::topology::{FaceCorner, Topology};
 use hullform::mesh::{ControlMesh, INFINITE_SHARPNESS, Model, builtin};
 use hullform::method::{DepthTags, METHODS, MacroFace, MacroFaces, Method, Prepared, to_ptex};
@@ -328,6 +330,112 @@ fn check_drawn(model: &Model, faces: MacroFaces) {
     }
 }
 
+/// Which faces are drawn alone of what single patches draw: the pass and the slot, by ptex face.
+fn singles(prepared: &Prepared) -> HashMap<u32, (usize, usize)> {
+    let passes = prepared.passes.iter().enumerate();
+    let patches = passes.flat_map(|(number, pass)| {
+        let patches = pass.patches.iter().enumerate();
+        patches.map(move |(slot, patch)| (patch.ptex, (number, slot)))
+    });
+    patches.collect()
+}
+
+/// Of each edge of the mesh, how many of its faces are drawn.
+fn drawn_faces(topology: &Topology, known: &HashMap<u32, (usize, usize)>) -> Vec<u32> {
+    let mut drawn = vec![0; topology.edge_count()];
+    let mut ptex = 0;
+    for face in 0..topology.face_count() as u32 {
+        let edges = topology.face_edges(face);
+        if known.contains_key(&ptex) {
+            edges.iter().for_each(|&edge| drawn[edge as usize] += 1);
+        }
+        ptex += if edges.len() == 4 {
+            1
+        } else {
+            edges.len() as u32
+        };
+    }
+    drawn
+}
+
+/// With a depth for each vertex: each vertex is still one of its faces', to the bit, and nothing is open but the boundary. Tells how many macro faces have
+/// sides of different levels.
+fn check_tagged(model: &Model, faces: MacroFaces) -> usize {
+    let level: u32 = if faces.greatest_level() < 8 { 4 } else { 8 };
+    let depth =
+        |vertex: usize| (vertex.wrapping_mul(0x9e37_79b9) >> 16) as u32 % (level.ilog2() + 1);
+    let depths = (0..model.mesh().vertex_count()).map(|vertex| depth(vertex) as f32);
+    let tags = DepthTags::new(depths.collect::<Vec<f32>>());
+    let prepare = |faces: MacroFaces| method().prepare(model, faces).ok();
+    let Some((prepared, single)) = prepare(faces).zip(prepare(MacroFaces::None)) else {
+        return 0;
+    };
+    let list = DrawList::new(&prepared, &options(level), None, cut(level), Some(&tags));
+    let list = list.expect("levels may differ");
+    let controls = prepared.controls(model.positions());
+    let all = list
+        .tessellate(&prepared, &controls)
+        .expect("it belongs to it");
+    let known = singles(&single);
+    let own = |point: &TessellatedPoint| {
+        let pass = &prepared.passes[point.pass as usize];
+        let (slot, uv) = pass.face_at(point.patch as usize, point.uv);
+        (known[&pass.patches[slot].ptex], uv)
+    };
+    for point in &all.points {
+        let ((pass, slot), uv) = own(point);
+        let alone = single.passes[pass].evaluate(&controls, slot, uv.into());
+        assert_eq!(point.surface, alone, "{faces:?} {point:?}");
+    }
+    let edges = model.topology().edge_count();
+    let drawn = drawn_faces(model.topology(), &known);
+    // The edges without another face on which a point lies; at a vertex all of these.
+    let ends = single.outline.edges();
+    let rims = |point: &TessellatedPoint| {
+        let ((pass, slot), [u, v]) = own(point);
+        let on = [v == 0.0, u == 1.0, v == 1.0, u == 0.0];
+        let sides = single.passes[pass].sides[slot].into_iter().zip(on);
+        let sides = sides.filter(|&(side, on)| on && (side as usize) < edges);
+        let sides: Vec<u32> = sides.map(|(side, _)| side).collect();
+        let mut all: BTreeSet<u32> = sides.iter().copied().collect();
+        if let &[a, b] = &sides[..] {
+            let [a, b] = [a, b].map(|edge| ends[edge as usize]);
+            let around = a.into_iter().filter(|vertex| b.contains(vertex));
+            all.extend(around.flat_map(|vertex| model.topology().vertex_edges(vertex)));
+        }
+        all.retain(|&edge| drawn[edge as usize] != 2);
+        all
+    };
+    let mut open: HashMap<[Bits; 2], Option<[u32; 2]>> = HashMap::new();
+    for &[a, b, c] in &all.triangles {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            let at = |i: u32| all.points[i as usize].surface.position.to_array();
+            let mut key = [from, to].map(|i| at(i).map(f32::to_bits));
+            key.sort_unstable();
+            let once = open.entry(key).or_default();
+            *once = once.is_none().then_some([from, to]);
+        }
+    }
+    for [from, to] in open.into_values().flatten() {
+        let [from, to] = [from, to].map(|i| &all.points[i as usize]);
+        if from.surface.position == to.surface.position {
+            continue;
+        }
+        assert!(
+            rims(from).intersection(&rims(to)).count() > 0,
+            "{faces:?}: a crack between {from:?} and {to:?}"
+        );
+    }
+    let passes = prepared.passes.iter().enumerate();
+    let levels = passes.flat_map(|(number, pass)| {
+        (0..pass.patches.len() as u32).map(move |patch| (number, patch))
+    });
+    let levels = levels.filter_map(|(pass, patch)| list.levels(&prepared, pass, patch));
+    levels
+        .filter(|levels| levels.cells != [1; 2] && levels.edges.iter().any(|&l| l < levels.inside))
+        .count()
+}
+
 const ALL: [MacroFaces; 3] = [
     MacroFaces::Quartets,
     MacroFaces::Rectangles { span: 16 },
@@ -340,9 +448,45 @@ fn cells_have_the_bits_of_faces() {
         let model = Model::new(builtin(name).expect("it is built in"));
         ALL.into_iter().for_each(|faces| check_drawn(&model, faces));
     }
+    let mut lowered = 0;
     for mesh in [grid([12, 7], [true; 2]), grid([9, 6], [false; 2]), cube(4)] {
         let model = Model::new(mesh);
-        ALL.into_iter().for_each(|faces| check_drawn(&model, faces));
+        for faces in ALL {
+            check_drawn(&model, faces);
+            lowered += check_tagged(&model, faces);
+        }
+    }
+    assert!(
+        lowered > 50,
+        "{lowered} macro faces with sides of several levels"
+    );
+}
+
+/// Single faces, rows, rings and tubes, which meet themselves.
+#[test]
+fn narrow_meshes_are_drawn_like_others() {
+    let closings = [[false; 2], [true, false], [false, true], [true; 2]];
+    for closed in closings {
+        for [columns, rows] in [
+            [1, 1],
+            [2, 1],
+            [3, 1],
+            [1, 4],
+            [2, 2],
+            [3, 2],
+            [3, 3],
+            [5, 2],
+        ] {
+            let least = |closed: bool| if closed { 3 } else { 1 };
+            if columns < least(closed[0]) || rows < least(closed[1]) {
+                continue;
+            }
+            let model = Model::new(grid([columns, rows], closed));
+            for faces in ALL {
+                check_drawn(&model, faces);
+                check_tagged(&model, faces);
+            }
+        }
     }
 }
 
@@ -352,8 +496,10 @@ proptest! {
     #[test]
     fn cells_of_any_mesh_have_the_bits_of_faces(recipe in wild()) {
         let model = Model::new(recipe.mesh());
-        ALL.into_iter()
-            .for_each(|faces| check_drawn(&model, faces));
+        for faces in ALL {
+            check_drawn(&model, faces);
+            check_tagged(&model, faces);
+        }
     }
 }
 
@@ -376,43 +522,50 @@ fn what_does_not_go_with_macro_faces_is_refused() {
             greatest: most,
         };
         assert_eq!(refused(faces, options(most + 1)), Some(level));
-        let decides = SurfaceOptions {
-            decides: Decides::Device,
-            ..options(1)
-        };
         let pattern = SurfaceOptions {
             backend: Backend::Pattern,
             residence: Residence::Cache,
             ..options(1)
         };
-        for options in [decides, pattern] {
-            let misuse = refused(faces, options);
-            assert!(
-                matches!(misuse, Some(Misuse::MacroFaces { .. })),
-                "{misuse:?}"
-            );
-        }
-        let prepared = prepare(faces);
+        let misuse = refused(faces, pattern);
+        assert!(
+            matches!(misuse, Some(Misuse::MacroFaces { .. })),
+            "{misuse:?}"
+        );
         let fractional = Cut {
             spacing: Spacing::FractionalEven,
             ..cut(1)
         };
-        let tags = DepthTags::new(vec![0.0; model.mesh().vertex_count()]);
-        for (cut, tags) in [(fractional, None), (cut(1), Some(&tags))] {
-            let list = DrawList::new(&prepared, &options(1), None, cut, tags);
-            let refused = list.expect_err("refused");
-            assert!(
-                matches!(refused, Error::Misuse(Misuse::MacroFaces { .. })),
-                "{refused}"
-            );
-        }
-        let edited = method().prepare_editable(&model, faces, &Database::default());
-        assert!(matches!(edited, Err(Error::Option { .. })));
+        let list = DrawList::new(&prepare(faces), &options(1), None, fractional, None);
+        let refused = list.expect_err("refused");
+        assert!(
+            matches!(refused, Error::Misuse(Misuse::MacroFaces { .. })),
+            "{refused}"
+        );
     }
-    let cached = SurfaceOptions {
-        residence: Residence::Cache,
-        ..options(1)
-    };
-    assert_eq!(refused(MacroFaces::Quartets, cached), None);
-    assert!(refused(rectangles, cached).is_some());
+}
+
+#[test]
+fn edits_prepare_macro_faces_anew() {
+    let database = Database::default();
+    for faces in ALL {
+        let mut model = Model::new(builtin("hull").expect("it is built in"));
+        let editable = method().prepare_editable(&model, faces, &database);
+        let mut editable = editable.expect("it can be drawn");
+        for hole in [40, 200] {
+            let [a, b] = model.topology().edges()[hole as usize].vertices;
+            let mut edit = model.mesh().edit();
+            edit.hole(hole, true).crease(a, b, 2.0);
+            let changes = model.apply(&edit).expect("there is such a face");
+            let update = editable.update(&model, &changes, &database);
+            assert!(update.expect("it goes").is_whole);
+            let fresh = method().prepare(&model, faces).expect("it can be drawn");
+            let [own, fresh] = [editable.prepared(), &fresh].map(|prepared| {
+                let list = DrawList::new(prepared, &options(2), None, cut(2), None);
+                let controls = prepared.controls(model.positions());
+                list.expect("all is sound").tessellate(prepared, &controls)
+            });
+            assert_eq!(own.expect("it belongs to it"), fresh.expect("and to it"));
+        }
+    }
 }

@@ -171,6 +171,33 @@ fn sheet_by_normal() {
     compare("sheet-normal", &["builtin:sheet", "--shading", "normal"]);
 }
 
+#[test]
+fn macro_faces_by_patch() {
+    for kind in ["quartets", "rectangles"] {
+        let arguments = ["builtin:sheet", "--macro", kind, "--shading", "patch"];
+        let level = ["--level", "4", "--wireframe"];
+        compare(
+            &format!("macro-{kind}-patch"),
+            &[&arguments[..], &level].concat(),
+        );
+    }
+}
+
+/// By the trees of their faces, from a cache, finer where it is nearer.
+#[test]
+fn rectangles_by_node() {
+    let arguments = ["builtin:hull", "--macro", "rectangles", "--level", "4"];
+    let how = [
+        "--residence",
+        "cache",
+        "--adaptive",
+        "distance",
+        "--shading",
+        "node",
+    ];
+    compare("macro-rectangles-node", &[&arguments[..], &how].concat());
+}
+
 /// A shape of a domain that a method draws: the first that it does not refuse, and the scheme.
 fn shape(method: &Method, domain: Domain) -> (&'static str, Scheme) {
     let fits = |scheme: Scheme| match domain {

@@ -30,6 +30,8 @@ CellPlace find_cell(Patch record, vec2 uv) {
     uvec2 steps = uvec2(nearest);
     uvec2 at = min(steps / MACRO_STEPS, cells - 1u);
     precise vec2 own = vec2(steps - at * MACRO_STEPS) * (1.0 / float(MACRO_STEPS));
+    // Where a side is one cell its vertices are exact, and beside an n-gon they are at half steps.
+    own = mix(own, uv, equal(cells, uvec2(1u)));
     precise vec2 rest = 1.0 - own;
     uint number = at.x + cells.x * at.y;
     uint word = control_at(record.controls + MACRO_HEADER + (cells.x + 3u) * (cells.y + 3u) + number);

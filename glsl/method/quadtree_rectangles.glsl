@@ -5,7 +5,9 @@
 #ifndef QUADTREE_RECTANGLES_GLSL
 #define QUADTREE_RECTANGLES_GLSL
 
+#ifndef CACHED_POINTS
 #define SCRATCH_RING
+#endif
 #define MACRO_FACES
 // Rings are of several faces: the vertex shader has no room for them.
 #define FETCHED_RINGS
@@ -33,7 +35,7 @@ const uint CONTROL_POINTS = 1u;
 vec3 control_point(Patch record, uint number) { return vec3(0.0); }
 #endif
 
-#ifdef STAGE_CONTROL
+#if defined(STAGE_CONTROL) && !defined(CACHED_POINTS)
 uint planned_cells(Patch record) { return control_at(record.controls + 3u); }
 
 // A cell with a plan, of those there are.
@@ -79,8 +81,13 @@ Point evaluate_patch(Patch record, uint slot, vec2 uv) {
     Patch cell = patches[place.number];
     Point point;
     if (has_plan(cell)) {
+#ifdef CACHED_POINTS
+        uint own = slot_of(place.number);
+#else
         memoryBarrierBuffer();
-        point = planned_patch(cell, slot + uint(scratch[slot + place.before].x), place.uv);
+        uint own = slot + uint(scratch[slot + place.before].x);
+#endif
+        point = planned_patch(cell, own, place.uv);
     } else {
         point = regular_cell(record, cell, place);
     }

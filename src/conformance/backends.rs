@@ -7,9 +7,12 @@
 //! Where control points need stencils the tessellator's come through the scratch ring and the others' from a cache: so both residences are compared as
 //! well.
 //!
-//! Where depths ask for more than 64 segments patches are cut into pieces, and the surface is whole all the same.
+//! Where depths ask for more than 64 segments patches are cut into pieces, and the surface is whole all the same; and so it is where several faces are one
+//! patch, whose vertices have the bits of the faces'.
 //!
 //! A seeded fault turns a bit of a vertex, or gives a patch's edge the tags of another.
+
+mod macro_faces;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -85,6 +88,7 @@ fn cases() -> Vec<Case> {
             move |context| pieces(context, &Model::new(builtin(shape)?)),
         )
     }));
+    cases.extend(macro_faces::cases());
     cases
 }
 
@@ -126,13 +130,26 @@ impl Drawn {
         cut: Cut,
     ) -> Result<Drawn> {
         let has_ring = prepared.passes.iter().any(|pass| pass.cached.is_some());
+        // What the tessellator draws through the ring the others draw from a cache.
+        let residence = match has_ring && !backend.takes_ring() {
+            true => Residence::Cache,
+            false => Residence::Ring,
+        };
+        Drawn::from(context, model, prepared, (backend, residence), tags, cut)
+    }
+
+    /// The same with control points in a residence.
+    fn from(
+        context: &Context,
+        model: &Model,
+        prepared: Prepared,
+        (backend, residence): (Backend, Residence),
+        tags: Option<DepthTags>,
+        cut: Cut,
+    ) -> Result<Drawn> {
         let options = SurfaceOptions {
             backend,
-            // What the tessellator draws through the ring the others draw from a cache.
-            residence: match has_ring && !backend.takes_ring() {
-                true => Residence::Cache,
-                false => Residence::Ring,
-            },
+            residence,
             ..capturing(context, &prepared, backend.cut(cut))
         };
         let workarounds = context.workarounds()?;
@@ -370,14 +387,23 @@ fn whole(
     (backend, tags, cut): (Backend, DepthTags, Cut),
     check: &mut Check,
 ) -> Result<usize> {
+    mislead(context, &mut prepared);
+    let drawn = Drawn::new(context, model, prepared, backend, Some(tags), cut)?;
+    Ok(hold_whole(&drawn, check))
+}
+
+/// The seeded fault of what is to be whole: whatever the levels are, they are not those of the neighbours.
+fn mislead(context: &Context, prepared: &mut Prepared) {
     if context.is_wrong() {
-        // Whatever the levels are, they are not those of the neighbours.
         let all = prepared.outline.edges().len() as u32;
         for sides in prepared.passes[0].sides.iter_mut().step_by(2) {
             *sides = sides.map(|side| (side + all / 2) % all);
         }
     }
-    let drawn = Drawn::new(context, model, prepared, backend, Some(tags), cut)?;
+}
+
+/// Holds what was drawn to be whole: how many triangles.
+fn hold_whole(drawn: &Drawn, check: &mut Check) -> usize {
     let arrived: usize = drawn.passes.iter().map(Vec::len).sum();
     check.hold(arrived as u64 == drawn.expected, || {
         format!("{arrived} of {} vertices", drawn.expected)
@@ -386,5 +412,5 @@ fn whole(
     check.hold(open == boundary, || {
         format!("{open} open edges instead of {boundary}")
     });
-    Ok(drawn.triangles.iter().map(Vec::len).sum())
+    drawn.triangles.iter().map(Vec::len).sum()
 }

@@ -53,7 +53,7 @@ pub enum Misuse {
     SubPatchPipelines,
     /// What does not go with macro faces.
     #[error(
-        "macro faces are drawn by the tessellator, at one whole level for all: that does not go together with {what}"
+        "macro faces are drawn by the tessellator, at whole levels: that does not go together with {what}"
     )]
     MacroFaces {
         /// What was asked for as well.

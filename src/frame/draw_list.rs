@@ -52,7 +52,7 @@ impl DrawList {
     ) -> Result<DrawList> {
         options.check(prepared)?;
         let cut = options.cut(cut)?;
-        check_macro_faces(prepared, cut, tags)?;
+        check_macro_faces(prepared, cut)?;
         let bounds = options.bounds(instance_vertices);
         if tags.is_some() && options.decides == Decides::Device {
             let what = "depth tags";
@@ -441,14 +441,12 @@ fn all_sub_patches(
 }
 
 /// # Errors
-/// [`Misuse::MacroFaces`] for levels of their own, and for fractional spacing: a side of a macro face has vertices where those of its faces are.
-fn check_macro_faces(prepared: &Prepared, cut: Cut, tags: Option<&DepthTags>) -> Result<()> {
-    let what = match () {
-        () if prepared.macro_faces == MacroFaces::None => return Ok(()),
-        () if cut.spacing != Spacing::Equal => "fractional spacing",
-        () if tags.is_some() => "depth tags",
-        () => return Ok(()),
-    };
+/// [`Misuse::MacroFaces`] for fractional spacing: a side of a macro face has vertices where those of its faces are, with short steps within it.
+fn check_macro_faces(prepared: &Prepared, cut: Cut) -> Result<()> {
+    if prepared.macro_faces == MacroFaces::None || cut.spacing == Spacing::Equal {
+        return Ok(());
+    }
+    let what = "fractional spacing";
     Err(Error::Misuse(Misuse::MacroFaces { what }))
 }
 
@@ -479,17 +477,20 @@ fn tagged_levels(
             level
         }
     };
-    let inside = |patch: &abi::Patch| match tags.insides.get(patch.ptex as usize) {
+    let inside = |face: &abi::Patch| match tags.insides.get(face.ptex as usize) {
         Some(&depth) if backend.takes_any_level() => level(depth),
         _ => 0.0,
     };
     let of_pass = |pass: &Pass| {
         let (domain, spacing, max_level) = (pass.domain, cut.spacing, pass.max_level);
-        let levels = |(patch, sides): (&abi::Patch, &[u32; 4])| {
-            let edges = sides.map(|side| level(depths[side as usize]));
-            levels_of_edges_and_inside(domain, patch, edges, inside(patch), spacing, max_level)
+        let levels = |patch: usize| {
+            let edges = pass.sides[patch].map(|side| level(depths[side as usize]));
+            let faces = pass.patches[pass.faces_of(patch)].iter();
+            let inside = faces.map(inside).fold(0.0, f32::max);
+            let record = &pass.patches[patch];
+            levels_of_edges_and_inside(domain, record, edges, inside, spacing, max_level)
         };
-        pass.patches.iter().zip(&pass.sides).map(levels).collect()
+        (0..pass.patches.len()).map(levels).collect()
     };
     Ok(prepared.passes.iter().map(of_pass).collect())
 }

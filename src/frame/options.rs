@@ -115,22 +115,15 @@ impl SurfaceOptions {
             .check(prepared, self.residence, self.greatest_level)
     }
 
-    /// All cells of macro faces have one whole level, and control shaders run the stencils of all of a rectangle's.
+    /// Sides of macro faces are of several edges, which tessellators make at once, and as many as they can.
     ///
     /// # Errors
     /// [`Misuse::MacroFaces`] and [`Misuse::MacroLevel`] for what does not go with macro faces.
     fn check_macro_faces(&self, prepared: &Prepared) -> Result<()> {
         let faces = prepared.macro_faces;
-        let mut passes = prepared.passes.iter();
-        let has_no_cache =
-            passes.any(|pass| pass.cached.is_none() && !pass.scratch_points.is_empty());
         let what = match () {
             () if faces == MacroFaces::None => return Ok(()),
             () if self.backend != Backend::Tessellator => "another backend than the tessellator",
-            () if self.decides == Decides::Device => "decisions by the device",
-            () if has_no_cache && self.residence == Residence::Cache => {
-                "a cache, which rectangles with irregular faces do not have"
-            }
             () if self.greatest_level > faces.greatest_level() as f32 => {
                 return Err(Error::Misuse(Misuse::MacroLevel {
                     span: faces.span(),

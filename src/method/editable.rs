@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Misuse, Result};
 use crate::mesh::{ChangeSet, Model};
-use crate::method::{Method, MethodOptions, PassChange, Prepared, Update};
+use crate::method::{MacroFaces, Method, MethodOptions, PassChange, Prepared, Update};
 use crate::plan::Database;
 
 /// Plans some faces of a model again.
@@ -52,7 +52,7 @@ impl std::fmt::Debug for Editable {
 }
 
 impl Method {
-    /// Whether edits prepare again only what they influence. Other methods prepare all of it again, and are as right.
+    /// Whether edits prepare again only what they influence; with [`MacroFaces`] not. Else all of it is prepared again, which is as right.
     pub fn edits_in_place(&self) -> bool {
         self.edits.is_some()
     }
@@ -86,7 +86,9 @@ impl Method {
         options: MethodOptions,
         database: &Database,
     ) -> Result<(Prepared, Option<Box<dyn Edits>>)> {
-        let Some(edits) = self.edits else {
+        // Lines of macro faces lead far from what is edited.
+        let is_apart = options.macro_faces == MacroFaces::None;
+        let Some(edits) = self.edits.filter(|_| is_apart) else {
             return Ok((self.prepare_with(model, options, database)?, None));
         };
         self.check_model(model)?;

@@ -4,6 +4,7 @@
 //! **Rectangles** are what separatrices leave of the mesh, see `macro_faces/rectangles.rs`; **quartets** are four regular faces around a vertex, see
 //! `macro_faces/quartets.rs`. Faces of other than four corners are in none, nor are holes.
 
+mod lines;
 mod quartets;
 mod rectangles;
 mod region;
@@ -12,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Model;
 use crate::mesh::topology::FaceCorner;
 use crate::plan::SmoothQuads;
+pub(super) use lines::join_sides;
 use region::Region;
 
 /// Which faces are drawn together.

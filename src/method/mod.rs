@@ -245,6 +245,9 @@ impl Method {
             pass.sides = sides;
             pass.needs = [model.mesh().vertex_count(), prepared.points.count as usize];
         }
+        if prepared.macro_faces != MacroFaces::None {
+            macro_faces::join_sides(&mut prepared);
+        }
         prepared
     }
 

@@ -16,12 +16,14 @@ use crate::method::ptex::{Child, child};
 use crate::tessellation::Domain;
 
 /// The edges and faces of a control mesh. Both count as sides, edges first: a patch's edge is a part of one of its mesh's edges, or lies within
-/// one of its faces.
+/// one of its faces. Behind them come the lines of edges that have one level, where there are [`MacroFaces`](crate::method::MacroFaces).
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     /// The control vertices of each edge.
     edges: Vec<[u32; 2]>,
     faces: Arc<Faces>,
+    /// Each as a way along all of its edges that ends where it begins.
+    lines: Faces,
     vertices: usize,
     /// Found when somebody asks.
     stars: OnceLock<Vec<Star>>,
@@ -37,13 +39,24 @@ impl Outline {
         Outline {
             edges: (0..topology.edge_count() as u32).map(ends).collect(),
             faces: topology.shared_faces().clone(),
+            lines: Faces::default(),
             vertices: topology.vertex_count(),
             stars: OnceLock::new(),
             limits,
         }
     }
 
-    /// The depth of each side, by one a control vertex: of an edge the greater of its ends', of a face the greatest of its edges'.
+    /// Gives it lines.
+    pub(super) fn add_lines(&mut self, lines: Faces) {
+        self.lines = lines;
+    }
+
+    /// How many edges and faces there are: lines come behind these.
+    pub(super) fn first_line(&self) -> u32 {
+        (self.edges.len() + self.faces.len()) as u32
+    }
+
+    /// The depth of each side, by one a control vertex: of an edge the greater of its ends', of a face or a line the greatest of its edges'.
     ///
     /// # Errors
     /// [`Misuse::Count`] for other than one depth a control vertex.
@@ -54,7 +67,8 @@ impl Outline {
             tags.fold(0.0, f32::max)
         };
         let edges = self.edges.iter().map(|ends| greatest(ends));
-        Ok(edges.chain(self.faces.iter().map(greatest)).collect())
+        let all = edges.chain(self.faces.iter().map(greatest));
+        Ok(all.chain(self.lines.iter().map(greatest)).collect())
     }
 
     /// Refuses lists that have not one entry a control vertex.
@@ -75,12 +89,16 @@ impl Outline {
         &self.edges
     }
 
-    /// The control vertices of a side: of an edge its ends, of a face all in turn. None where there is no such side.
+    /// The control vertices of a side: of an edge its ends, of a face all in turn; of a line those of a way along all of its edges, there and back, so that it
+    /// ends where it begins. None where there is no such side.
     pub fn side(&self, side: u32) -> &[u32] {
         let side = side as usize;
-        match self.edges.get(side) {
-            Some(ends) => ends,
-            None => self.faces.get(side - self.edges.len()),
+        let Some(face) = side.checked_sub(self.edges.len()) else {
+            return &self.edges[side];
+        };
+        match face.checked_sub(self.faces.len()) {
+            None => self.faces.get(face),
+            Some(line) => self.lines.get(line),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Patches that are drawn with one set of shaders, and how they read on the CPU.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -8,7 +10,7 @@ use crate::method::cell::Cell;
 use crate::method::ptex;
 use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::table::Table;
-use crate::tessellation::Domain;
+use crate::tessellation::{Domain, cells};
 
 /// Patches that are drawn with one set of shaders.
 #[derive(Clone, Debug)]
@@ -178,6 +180,18 @@ impl Pass {
                 (slot, own.to_array())
             }
             _ => (patch, uv),
+        }
+    }
+
+    /// The slots of the faces of patch `patch`: of a macro face those behind all others, of which nothing is drawn by itself, row by row; else its own.
+    pub fn faces_of(&self, patch: usize) -> Range<usize> {
+        match self.face_at {
+            Some(face_at) if !self.is_vacant(patch) => {
+                let [columns, rows] = cells(&self.patches[patch]);
+                let (first, _) = face_at(self, patch, Vec2::ZERO);
+                first..first + (columns * rows) as usize
+            }
+            _ => patch..patch + 1,
         }
     }
 

@@ -30,7 +30,7 @@ use std::time::Instant;
 use glam::Vec3;
 
 use crate::abi;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::topology::Hubs;
 use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
@@ -144,13 +144,6 @@ fn editable(
     database: &Database,
 ) -> Result<(Prepared, Box<dyn Edits>)> {
     bounded::check_without_hubs(model)?;
-    if options.macro_faces != MacroFaces::None {
-        return Err(Error::Option {
-            option: "--macro",
-            problem: "faces that are drawn together are not edited".into(),
-            remedy: "leave it out, or prepare anew after each edit".into(),
-        });
-    }
     let (prepared, planner) = planned(model, options, database, true)?;
     Ok((prepared, Box::new(planner)))
 }

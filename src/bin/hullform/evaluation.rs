@@ -3,7 +3,7 @@
 use hullform::frame::{DrawList, SurfaceOptions};
 use hullform::gpu::Residence;
 use hullform::mesh::Model;
-use hullform::method::{MacroFaces, to_ptex};
+use hullform::method::to_ptex;
 use hullform::{Error, Result};
 use rayon::prelude::*;
 
@@ -23,11 +23,7 @@ pub fn evaluate(model: &Model, chosen: Chosen, cutting: Cutting) -> Result<Surfa
     let prepared = drawing::prepare(model, chosen)?;
     let options = SurfaceOptions {
         backend: cutting.backend,
-        // Nothing is kept in a ring, but rectangles of faces have no cache.
-        residence: match prepared.macro_faces {
-            MacroFaces::Rectangles { .. } => Residence::Ring,
-            _ => Residence::Cache,
-        },
+        residence: Residence::Cache,
         ring_bytes: u64::MAX,
         greatest_level: cutting.cut.level,
         ..Default::default()

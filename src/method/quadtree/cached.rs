@@ -6,11 +6,12 @@
 use std::hash::{Hash, Hasher};
 
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHasher};
+use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
 use smallvec::SmallVec;
 
 use crate::abi;
 use crate::method::cached::{CachedPass, CachedPoints};
+use crate::method::quadtree::macro_faces;
 use crate::method::quadtree::twin::{Use, plans};
 use crate::method::quadtree::view::Border;
 use crate::method::{Pass, Prepared, Table};
@@ -79,9 +80,16 @@ pub(super) fn patches(prepared: &Prepared) -> Vec<(usize, &Pass, usize)> {
 
 /// What patches need up to a plan level.
 pub(super) fn needed(all: &[(usize, &Pass, usize)], deepest: u32) -> Vec<PatchPoints> {
-    let of = |&(_, pass, number): &(usize, &Pass, usize)| match pass.is_vacant(number) {
-        true => PatchPoints::default(),
-        false => Patch::new(pass, number).points(deepest),
+    let rows = all.iter().flat_map(|&(number, pass, patch)| {
+        macro_faces::single_row(pass, patch).map(move |cell| (number, cell))
+    });
+    let rows: FxHashSet<(usize, usize)> = rows.collect();
+    let of = |&(number, pass, patch): &(usize, &Pass, usize)| {
+        let least = u32::from(rows.contains(&(number, patch)));
+        match macro_faces::has_points(pass, patch) {
+            true => Patch::new(pass, patch).points(least, deepest),
+            false => PatchPoints::default(),
+        }
     };
     all.par_iter().map(of).collect()
 }
@@ -285,8 +293,10 @@ impl<'a> Patch<'a> {
         self.border.end(level, number) - start
     }
 
-    fn points(self, deepest: u32) -> PatchPoints {
-        let levels: Vec<u32> = (0..=deepest).map(|level| self.level(level)).collect();
+    /// Those of plan levels up to one, of which none is less than `least`.
+    fn points(self, least: u32, deepest: u32) -> PatchPoints {
+        let levels = (0..=deepest).map(|level| self.level(level).max(least));
+        let levels: Vec<u32> = levels.collect();
         let mut points = PatchPoints {
             needed: Vec::new(),
             starts: [0; USES],

@@ -1,6 +1,7 @@
 //! Several faces as one patch (Brainerd et al. 2016, section 7.3): a grid of cells, each of which is evaluated as its face is when it is drawn alone, by the
 //! same numbers in the same order, and so with the same bits. Twin of `glsl/lib/macro_face.glsl`, `glsl/lib/macro_regular.glsl`,
-//! `glsl/method/quadtree_quartets.glsl`, `glsl/method/quadtree_grids.glsl` and `glsl/method/quadtree_rectangles.glsl`.
+//! `glsl/method/quadtree_quartets.glsl`, `glsl/method/quadtree_grids.glsl` and `glsl/method/quadtree_rectangles.glsl`, or
+//! `glsl/method/quadtree_rectangles_cached.glsl`.
 //!
 //! Rectangles of regular faces alone have shaders of their own, without a ring: machines that run invocations abreast go both ways where some need one and some the
 //! other, and control shaders through all that any might compute.
@@ -13,6 +14,10 @@
 //! 11.3 functional specification, section 14.3), and so do we within a cell: vertex k of f is at the step nearest to k / f, which is exact where f is a power of
 //! two, and so are the steps from the other end. Its (u, v) is (cell + step) / n, rounded: three roundings away from it, less than half a step as
 //! long as 3 n 2^-24 < 2^-17. That holds up to n = 42, and there are 32 at most; so the nearest step is the one that was meant.
+//!
+//! Beside an n-gon a side has the vertices of two halves, at halves of steps. Such a side is one edge, n = 1, and what is divided by 1 is exact as it is.
+
+use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
@@ -121,6 +126,7 @@ impl Kind {
             ..Pass::new(shader, Domain::Quads, control_points, point)
         };
         if self == Kind::Rectangles && !found.is_empty() {
+            pass.cached = Some("quadtree_rectangles_cached");
             pass.controls = short.controls.clone();
             pass.tables = short.tables.clone();
             pass.scratch_points = short.scratch_points.clone();
@@ -292,6 +298,24 @@ fn has_plan(cell: &abi::Patch) -> bool {
     cell.flags >> abi::PATCH_RING_SHIFT & 63 != 0
 }
 
+/// Whether a cache has points of a patch: of macro faces their cells have them.
+pub(super) fn has_points(pass: &Pass, patch: usize) -> bool {
+    let record = &pass.patches[patch];
+    match pass.face_at {
+        None => !pass.is_vacant(patch),
+        Some(_) => record.flags & abi::PATCH_VACANT != 0 && has_plan(record),
+    }
+}
+
+/// The cells of a macro face of one row or column: across these there are two segments at least, whatever their level. None of any other patch.
+pub(super) fn single_row(pass: &Pass, patch: usize) -> Range<usize> {
+    let is_row = cells(&pass.patches[patch]).contains(&1);
+    match pass.faces_of(patch) {
+        faces if is_row && faces.len() > 1 => faces,
+        _ => 0..0,
+    }
+}
+
 /// Where the control vertices of a regular face are in the grid: from the first, how far it is to the next along its own u and v.
 struct Steps {
     first: i32,
@@ -335,6 +359,10 @@ impl CellPlace {
         let record = &pass.patches[patch];
         let [w, h] = cells(record);
         let along = |t: f32, cells: u32| {
+            // Its vertices are exact, and beside an n-gon they are at half steps.
+            if cells == 1 {
+                return (0, t);
+            }
             let steps = (t * cells as f32 * abi::MACRO_STEPS as f32).round_ties_even() as u32;
             let cell = (steps / abi::MACRO_STEPS).min(cells - 1);
             let rest = (steps - cell * abi::MACRO_STEPS) as f32;

@@ -6,7 +6,7 @@ use hullform::method::MacroFaces;
 /// Several faces a patch.
 #[derive(Args)]
 pub struct Macro {
-    /// Draw several faces as one patch, by methods with plans and all at one level: `none`, `rectangles` between lines from extraordinary vertices, or `quartets` of
+    /// Draw several faces as one patch, by methods with plans and at whole levels: `none`, `rectangles` between lines from extraordinary vertices, or `quartets` of
     /// regular faces
     #[arg(
         long = "macro",

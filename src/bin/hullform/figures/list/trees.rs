@@ -50,23 +50,23 @@ pub const FIGURES: &[Figure] = &[
     ),
     figure(
         "2016.figure.3",
-        "The tessellation pattern of one primitive a face",
+        "Tessellation patterns side by side: one primitive a face, feature-adaptive subdivision, uniform refinement",
         steps(
             &[
                 step(
-                    "pattern",
-                    "render box:2x2x2 --wireframe --level 8",
-                    Writes::Picture,
+                    "quadtree",
+                    "render box:2x2x2 --wireframe --level 6 --shading patch --size 560x560 --camera=45,35,1.5",
+                    Writes::Panel,
                 ),
                 step(
-                    "levels",
-                    "render box:2x2x2 --method fas --wireframe --level 8",
-                    Writes::Picture,
+                    "fas",
+                    "render box:2x2x2 --method fas --wireframe --level 6 --shading patch --size 560x560 --camera=45,35,1.5",
+                    Writes::Panel,
                 ),
                 step(
-                    "uniform",
-                    "render box:2x2x2 --method refine --wireframe --level 8",
-                    Writes::Picture,
+                    "refine",
+                    "render box:2x2x2 --method refine --wireframe --level 6 --shading patch --size 560x560 --camera=45,35,1.5",
+                    Writes::Panel,
                 ),
             ],
             &[],

@@ -26,7 +26,7 @@ pub(crate) fn deciding_tables(outline: &Outline, pass: &Pass) -> [Table; 3] {
         .enumerate()
         .map(|(patch, sides)| abi::PatchSides {
             sides: sides.map(&mut list),
-            hull: pass.hull(patch).len() as u32 | spline,
+            hull: pass.hull(patch).len() as u32 | spline | pass.stage_flags(patch),
         });
     let records: Vec<abi::PatchSides> = records.collect();
     [

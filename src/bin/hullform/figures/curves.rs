@@ -328,7 +328,7 @@ mod tests {
     #[test]
     fn errors_stay_below_costs_and_decades_are_as_long() {
         let point = |rms, milliseconds| Point {
-            method: "flat",
+            method: METHODS[0].name,
             level: 1,
             triangles: 2,
             rms,

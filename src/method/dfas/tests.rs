@@ -81,7 +81,8 @@ fn frames_that_need_less_draw_and_sum_less() {
 /// Each stretch of an edge is met by one the other way, at whatever depths and spacing; but for boundaries.
 #[test]
 fn depths_meet_without_a_gap() {
-    for name in MODELS {
+    // The sheet has holes, and nothing irregular.
+    for name in MODELS.into_iter().filter(|&name| name != "sheet") {
         let (model, prepared, controls) = prepared(name, 3);
         for seed in 0..3 {
             let levels = levels_of_sides(&prepared, seed);

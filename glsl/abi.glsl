@@ -266,6 +266,10 @@ const uint DECIDE_BOX = 128u;
 const uint DECIDE_ROWS_SHIFT = 8u;
 // In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
 const uint HULL_SPLINE = 2147483648u;
+// There: it is drawn from the depth on that it lies at, see `method/depths.rs`.
+const uint HULL_DYNAMIC = 1073741824u;
+// There: it is drawn at that depth alone.
+const uint HULL_SHALLOW = 536870912u;
 // In a term of a limit: the number behind this flag is that of a list of vertices, of whose sum the weight is; on the host, of a face.
 const uint LIMIT_FACE = 2147483648u;
 // Invocations of a workgroup of the shader that decides.
@@ -382,7 +386,7 @@ struct PatchSides {
     // Where, in a list of lists, the control vertices of the side stand to which each of its edges belongs, behind their number: two of an edge of the mesh;
     // all of a face for what lies within it.
     uint sides[4];
-    // So many of its control vertices, the first, have the surface in their convex hull, and perhaps `HULL_SPLINE`; 0 where none are known to.
+    // So many of its control vertices, the first, have the surface in their convex hull, and `HULL_...` flags; 0 where none are known to.
     uint hull;
 };
 

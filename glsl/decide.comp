@@ -87,13 +87,20 @@ bool is_all_outside(uint seen, uint eyes) {
 
 // Why a patch is not drawn in any of the views that are drawn together, whatever its levels; 0 where it is.
 uint culled_by(Patch record, PatchSides sides, bool all_outside, uint seen, uint eyes) {
-    uint hull = sides.hull & ~HULL_SPLINE;
+    uint hull = sides.hull & ~(HULL_SPLINE | HULL_DYNAMIC | HULL_SHALLOW);
     bool outside = (decision.flags & DECIDE_FRUSTUM) != 0u && hull > 0u;
     bool small = (decision.flags & DECIDE_SMALL) != 0u && hull > 0u;
     for (uint eye = 0u; eye < eyes && outside && !all_outside; ++eye) outside = is_outside(record, sides, hull, seen + eye);
     if (outside) return DECIDE_FRUSTUM;
     for (uint eye = 0u; eye < eyes && small; ++eye) small = is_small(record, hull, seen + eye);
     return small ? DECIDE_SMALL : 0u;
+}
+
+// How deep is refined around all irregularities, of methods that go as deep as a frame needs. Twin of `depth_at` in `method/depths.rs`.
+uint depth_of_frame() {
+    uint depth = 1u;
+    while (depth < 6u && float(1u << depth) < decision.level) ++depth;
+    return depth;
 }
 
 void main() {
@@ -109,12 +116,17 @@ void main() {
     uint culled = culled_by(record, sides, all_outside, seen, eyes);
     vec4 edges = vec4(0.0);
     float inside = 0.0;
-    if (culled == 0u && (record.flags & PATCH_VACANT) == 0u) {
+    uint halvings = patch_halvings(record);
+    uint depth = depth_of_frame();
+    bool dynamic = (sides.hull & HULL_DYNAMIC) != 0u;
+    bool shallow = (sides.hull & HULL_SHALLOW) != 0u;
+    bool drawn = !dynamic || (shallow ? halvings == depth : halvings <= depth);
+    if (culled == 0u && drawn && (record.flags & PATCH_VACANT) == 0u) {
         bool fractional_even = (decision.flags & FRAME_FRACTIONAL_EVEN) != 0u;
-        uint halvings = patch_halvings(record);
         for (uint i = 0u; i < 4u; ++i) {
             float level = halved_level(level_of_side(sides.sides[i], seen, eyes), halvings, fractional_even);
-            bool even = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u;
+            // At the last depth there are no smaller patches beyond.
+            bool even = (record.flags & (PATCH_EVEN_EDGE << i)) != 0u && (!dynamic || halvings < depth);
             float halved = half_level(level, fractional_even);
             edges[i] = even ? 2.0 * halved : level;
             inside = max(inside, level);

@@ -93,7 +93,7 @@ structs! {
         /// Where, in a list of lists, the control vertices of the side stand to which each of its edges belongs, behind their number: two of an edge of the mesh;
         /// all of a face for what lies within it.
         sides: [u32; 4],
-        /// So many of its control vertices, the first, have the surface in their convex hull, and perhaps `HULL_SPLINE`; 0 where none are known to.
+        /// So many of its control vertices, the first, have the surface in their convex hull, and `HULL_...` flags; 0 where none are known to.
         hull: u32,
     }
 

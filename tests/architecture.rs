@@ -380,16 +380,20 @@ fn every_shader_of_a_method_has_its_twin() {
 }
 
 /// Where else a method is named, and why.
-const NAMED: [(&str, &str, &str); 52] = [
+const NAMED: [(&str, &str, &str); 56] = [
     (
         "src/bin/hullform/figures/list/together.rs",
         "quadtree",
         PAPERS,
     ),
     ("src/bin/hullform/figures/list/trees.rs", "quadtree", PAPERS),
-    ("src/bin/hullform/figures/list/trees.rs", "gregory", PAPERS),
     ("src/bin/hullform/figures/list/trees.rs", "fas", PAPERS),
     ("src/bin/hullform/figures/list/trees.rs", "refine", PAPERS),
+    ("src/bin/hullform/figures/list/peers.rs", "quadtree", PAPERS),
+    ("src/bin/hullform/figures/list/peers.rs", "gregory", PAPERS),
+    ("src/bin/hullform/figures/list/peers.rs", "fas", PAPERS),
+    ("src/bin/hullform/figures/list/peers.rs", "dfas", PAPERS),
+    ("src/bin/hullform/figures/list/peers.rs", "refine", PAPERS),
     ("src/bin/hullform/figures/list/quadratic.rs", "qas", PAPERS),
     ("src/bin/hullform/figures/list/quadratic.rs", "pn", PAPERS),
     ("src/bin/hullform/figures/list/quadratic.rs", "flat", PAPERS),

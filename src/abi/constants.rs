@@ -273,6 +273,10 @@ constants! {
     DECIDE_ROWS_SHIFT = 8;
     /// In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
     HULL_SPLINE = 0x8000_0000;
+    /// There: it is drawn from the depth on that it lies at, see `method/depths.rs`.
+    HULL_DYNAMIC = 0x4000_0000;
+    /// There: it is drawn at that depth alone.
+    HULL_SHALLOW = 0x2000_0000;
     /// In a term of a limit: the number behind this flag is that of a list of vertices, of whose sum the weight is; on the host, of a face.
     LIMIT_FACE = 0x8000_0000;
     /// Invocations of a workgroup of the shader that decides.

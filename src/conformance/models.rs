@@ -47,6 +47,7 @@ pub(super) fn chosen(prepared: &Prepared, keep: impl Fn(&Pass, usize) -> bool) -
         pass.patches = kept.iter().map(|&i| pass.patches[i]).collect();
         pass.sides = kept.iter().map(|&i| pass.sides[i]).collect();
         pass.texture = kept.iter().map(|&i| pass.texture[i]).collect();
+        pass.keep_stages(&kept);
     }
     chosen.passes.retain(|pass| !pass.patches.is_empty());
     chosen

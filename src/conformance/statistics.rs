@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::gpu::{Cut, Fill, Shading};
 use crate::host::StatisticsQuery;
 use crate::mesh::{Model, builtin};
-use crate::method::{METHODS, Prepared};
+use crate::method::{METHODS, Pass, Prepared};
 
 /// The group.
 pub const GROUP: Group = Group {
@@ -129,6 +129,17 @@ fn patches(model: &Model, prepared: &Prepared) -> u64 {
         .sum()
 }
 
+/// The patches of a pass that a draw has: all, or those from the first that is drawn to the last, where frames go as deep as they need.
+fn submitted(pass: &Pass, cut: Cut) -> u32 {
+    if !pass.is_dynamic() {
+        return pass.patches.len() as u32;
+    }
+    let is_drawn = |&patch: &usize| cut.levels(pass, patch).is_some();
+    let drawn = || (0..pass.patches.len()).filter(is_drawn);
+    let ends = drawn().next().zip(drawn().next_back());
+    ends.map_or(0, |(first, last)| (last + 1 - first) as u32)
+}
+
 /// `bounded` says what is drawn of what was prepared.
 fn predicted(
     context: &Context,
@@ -153,7 +164,8 @@ fn predicted(
             let levels = cut.levels(&prepared.passes[pass], patch);
             levels.map_or(0, |levels| levels.triangles(cut.spacing))
         });
-        let patches = over_patches(&prepared, |_, _| 1) + u32::from(context.is_wrong());
+        let passes = prepared.passes.iter().map(|pass| submitted(pass, cut));
+        let patches = passes.sum::<u32>() + u32::from(context.is_wrong());
         let evaluations = u64::from(vertices(&prepared, cut));
         let right = [u64::from(patches), evaluations, u64::from(triangles)];
         let frame = captured(context, model, prepared, cut, Fill::Solid(Shading::Patch))?;

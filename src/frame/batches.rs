@@ -59,13 +59,13 @@ pub(super) fn batches<'a>(
     let mut ring_batch = 0;
     for (number, drawn) in drawn.into_iter().enumerate() {
         let most = bounds.patches_per_instance(drawn);
-        let mut first = 0;
-        let extent = drawn.count();
-        while (first as usize) < extent {
+        let Range { start, end } = drawn.range();
+        let mut first = start as u32;
+        while (first as usize) < end {
             let mut run = Run {
                 pass: number,
                 ring_batch,
-                ..bounds.longest(drawn, first as usize..extent)?
+                ..bounds.longest(drawn, first as usize..end)?
             };
             bounds.trim(&mut run, drawn, most);
             ring_batch += u32::from(bounds.uses_ring(drawn.pass));

@@ -5,9 +5,9 @@ use glam::Vec3;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::culling::bezier;
 use crate::frame::draw_list::new_number;
+use crate::frame::tagged::not_drawn;
 use crate::frame::{Decides, DrawList};
 use crate::method::{Pass, Prepared};
-use crate::tessellation::Levels;
 
 impl DrawList {
     /// The same of some patches alone, chosen by pass and number: of the others nothing is drawn, and no point is computed in the ring. For whoever knows which
@@ -31,18 +31,14 @@ impl DrawList {
             return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
         }
         let of_pass = |(number, pass): (usize, &Pass)| {
-            let not_drawn = Levels {
-                domain: pass.domain,
-                edges: [0.0; 4],
-                inside: 0.0,
-                cells: [1; 2],
-            };
             let levels = |patch: u32| match chosen(number, patch) {
                 true => self.levels(prepared, number, patch),
                 false => None,
             };
             let patches = 0..pass.patches.len() as u32;
-            patches.map(|p| levels(p).unwrap_or(not_drawn)).collect()
+            patches
+                .map(|p| levels(p).unwrap_or(not_drawn(pass)))
+                .collect()
         };
         let passes = prepared.passes.iter().enumerate();
         self.tagged = Some(passes.map(of_pass).collect());

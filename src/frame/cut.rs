@@ -1,7 +1,7 @@
 //! How finely a surface is cut.
 
 use crate::abi;
-use crate::method::{Pass, Prepared};
+use crate::method::{Pass, Prepared, depth_at};
 use crate::tessellation::{Levels, Spacing, levels, required_level};
 
 /// How finely a surface is cut, the same for all of it.
@@ -19,11 +19,12 @@ impl Cut {
         if pass.is_vacant(patch) {
             return None;
         }
-        let patch = pass.patches.get(patch)?;
+        // Where depths go by what a frame needs, all irregularities need the same.
+        let patch = pass.at_depths(patch, |_| depth_at(self.level))?;
         let max_level = pass.max_level;
         Some(levels(
             pass.domain,
-            patch,
+            &patch,
             self.level,
             self.spacing,
             max_level,

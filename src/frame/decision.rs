@@ -2,11 +2,10 @@
 
 use glam::{BVec3, Mat4, Vec3, Vec4, Vec4Swizzles};
 
-#[cfg(feature = "vulkan")]
 use crate::abi;
 use crate::frame::culling::{Culled, is_back, is_outside, is_small};
 use crate::frame::{Cut, Seen};
-use crate::method::{Outline, Pass};
+use crate::method::{Outline, Pass, depth_at};
 #[cfg(feature = "vulkan")]
 use crate::tessellation::Spacing;
 use crate::tessellation::{Levels, levels_of_edges};
@@ -63,6 +62,11 @@ pub enum Metric {
     Curvature(f32),
 }
 
+/// The record of a patch at the depth that all irregularities have where the device decides.
+fn at_cut(pass: &Pass, patch: usize, cut: Cut) -> Option<abi::Patch> {
+    pass.at_depths(patch, |_| depth_at(cut.level))
+}
+
 impl Decision {
     /// As shaders have it, for views from `view` on, of which `eyes` are decided for together.
     #[cfg(feature = "vulkan")]
@@ -116,14 +120,15 @@ impl Decision {
             edges: [0.0; 4],
             inside: 0.0,
         };
-        if patch < pass.patches.len() && pass.is_vacant(patch) {
+        let is_drawn = !pass.is_vacant(patch) && at_cut(pass, patch, cut).is_some();
+        if patch < pass.patches.len() && !is_drawn {
             return Some(none);
         }
         let decided = self.decide(outline, pass, patch, vertices, cut, seen)?;
         Some(decided.unwrap_or(none))
     }
 
-    /// The same, or why the patch is not drawn; None also where its slot is vacant.
+    /// The same, or why the patch is not drawn; None also where its slot is vacant, or it is not drawn at the depth of the cut.
     pub fn decide(
         &self,
         outline: &Outline,
@@ -133,7 +138,7 @@ impl Decision {
         cut: Cut,
         seen: &Seen,
     ) -> Option<Result<Levels, Culled>> {
-        let record = pass.patches.get(patch).filter(|_| !pass.is_vacant(patch))?;
+        let record = &at_cut(pass, patch, cut).filter(|_| !pass.is_vacant(patch))?;
         let sides = pass.sides.get(patch)?;
         let place = |&vertex: &u32| vertices[vertex as usize];
         let points: Vec<Vec3> = pass.hull(patch).iter().map(place).collect();

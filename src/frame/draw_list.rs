@@ -8,9 +8,10 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::patterns::Patterns;
 use crate::frame::sub_patches::{Drawn, has_sub_patches, join, levels_of, sub_patches};
-use crate::frame::{Backend, Cut, Decides, Draw, Residence, SurfaceOptions};
+use crate::frame::tagged::Tagged;
+use crate::frame::{Cut, Decides, Draw, Residence, SurfaceOptions};
 use crate::method::{DepthTags, MacroFaces, Pass, Prepared};
-use crate::tessellation::{Levels, Piece, Spacing, levels_of_edges_and_inside};
+use crate::tessellation::{Levels, Piece, Spacing};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
 ///
@@ -30,6 +31,8 @@ pub struct DrawList {
     draws: Vec<Vec<Draw>>,
     /// By pass and patch, where depth tags are given, or some are chosen; level 0 where nothing is drawn.
     pub(super) tagged: Option<Vec<Vec<Levels>>>,
+    /// How often the mesh is refined around each irregularity, of methods that go as deep as a frame needs.
+    depths: Option<Vec<u32>>,
     records: Vec<Vec<abi::PatchDraw>>,
     /// By pass, where patches may be cut before they are drawn.
     pub(super) sub_patches: Option<Vec<Vec<abi::SubPatch>>>,
@@ -58,8 +61,14 @@ impl DrawList {
             let what = "depth tags";
             return Err(Error::Misuse(Misuse::DecidedByDevice { what }));
         }
-        let tagged = tags.map(|tags| tagged_levels(prepared, options.backend, cut, tags));
-        let tagged = tagged.transpose()?;
+        let tagged = match (tags, options.decides) {
+            (Some(tags), _) => Some(Tagged::by_tags(prepared, options.backend, cut, tags)?),
+            (None, Decides::Host) => Tagged::by_cut(prepared, cut),
+            (None, Decides::Device) => None,
+        };
+        let (tagged, depths) = tagged.map(|own| (own.levels, own.depths)).unzip();
+        let of_cut = || prepared.depths_at(|_| cut.level);
+        let depths = prepared.is_dynamic().then(|| depths.unwrap_or_else(of_cut));
         let cut_first =
             has_sub_patches(cut.level).then(|| all_sub_patches(prepared, cut, tagged.as_deref()));
         let passes = prepared.passes.iter().enumerate();
@@ -83,6 +92,7 @@ impl DrawList {
             ring_batches: runs.iter().filter(uses_ring).count() as u32,
             draws: Vec::new(),
             tagged,
+            depths,
             records: Vec::new(),
             sub_patches: cut_first,
             instances: Vec::new(),
@@ -129,13 +139,17 @@ impl DrawList {
         for number in 0..self.runs.len() {
             let run = self.runs[number].clone();
             self.give_slots(prepared, &run);
+            // Those before the first that is drawn have places too.
+            let before = run.first as usize;
             if records {
                 let decided = self.decided(prepared, &run);
+                self.records[run.pass].resize(before, abi::PatchDraw::default());
                 self.records[run.pass].extend(decided);
             }
             if patterns {
                 let levels = |patch| self.levels(prepared, run.pass, patch);
                 let (draws, instances) = all.arrange(run.patches(), levels);
+                self.instances[run.pass].resize(before, 0);
                 self.instances[run.pass].extend(instances);
                 self.draws.push(draws);
             } else {
@@ -255,6 +269,29 @@ impl DrawList {
     /// Whether patches have levels of their own.
     pub fn is_tagged(&self) -> bool {
         self.tagged.is_some()
+    }
+
+    /// The depths of irregularities, of methods that go as deep as a frame needs.
+    #[cfg(feature = "vulkan")]
+    pub(crate) fn depths(&self) -> Option<&[u32]> {
+        self.depths.as_deref()
+    }
+
+    /// How many points a frame of it needs of those that are computed once a pose, and of how many terms they are sums: for methods that refine as deep as a frame
+    /// needs, those of its depths.
+    pub fn computed(&self, prepared: &Prepared) -> [u64; 2] {
+        let points = &prepared.points;
+        let steps = points.steps_at(self.depths.as_deref());
+        let mut counts = [0; 2];
+        for part in steps.iter().flatten() {
+            counts[0] += u64::from(part.count);
+            let rows = &points.rows[part.first_row as usize..][..part.count as usize];
+            let terms = rows
+                .iter()
+                .map(|row| row.count & !(abi::ROW_OPEN | abi::ROW_FIRM));
+            counts[1] += terms.map(u64::from).sum::<u64>();
+        }
+        counts
     }
 
     /// Whether patches may be cut into pieces before they are drawn.
@@ -448,49 +485,4 @@ fn check_macro_faces(prepared: &Prepared, cut: Cut) -> Result<()> {
     }
     let what = "fractional spacing";
     Err(Error::Misuse(Misuse::MacroFaces { what }))
-}
-
-/// The levels that depth tags give to all patches, at a cut as the backend makes it.
-fn tagged_levels(
-    prepared: &Prepared,
-    backend: Backend,
-    cut: Cut,
-    tags: &DepthTags,
-) -> Result<Vec<Vec<Levels>>> {
-    prepared.check_count("depth tags", tags.depths.len())?;
-    let mut tagged = tags.depths.iter().copied().enumerate();
-    let deepest = DepthTags::DEEPEST;
-    if let Some((vertex, depth)) = tagged.find(|(_, depth)| !(0.0..=deepest).contains(depth)) {
-        return Err(Error::Misuse(Misuse::Depth { vertex, depth }));
-    }
-    let mut insides = tags.insides.iter().copied().enumerate();
-    if let Some((ptex, depth)) = insides.find(|(_, depth)| !(0.0..=deepest).contains(depth)) {
-        return Err(Error::Misuse(Misuse::InsideDepth { ptex, depth }));
-    }
-    let depths: Vec<f32> = prepared.outline.depths(&tags.depths)?;
-    let level = |depth: f32| {
-        let level = backend.level_of(depth).min(cut.level);
-        // Where vertices are counted levels are whole.
-        if has_sub_patches(cut.level) {
-            level.ceil()
-        } else {
-            level
-        }
-    };
-    let inside = |face: &abi::Patch| match tags.insides.get(face.ptex as usize) {
-        Some(&depth) if backend.takes_any_level() => level(depth),
-        _ => 0.0,
-    };
-    let of_pass = |pass: &Pass| {
-        let (domain, spacing, max_level) = (pass.domain, cut.spacing, pass.max_level);
-        let levels = |patch: usize| {
-            let edges = pass.sides[patch].map(|side| level(depths[side as usize]));
-            let faces = pass.patches[pass.faces_of(patch)].iter();
-            let inside = faces.map(inside).fold(0.0, f32::max);
-            let record = &pass.patches[patch];
-            levels_of_edges_and_inside(domain, record, edges, inside, spacing, max_level)
-        };
-        (0..pass.patches.len()).map(levels).collect()
-    };
-    Ok(prepared.passes.iter().map(of_pass).collect())
 }

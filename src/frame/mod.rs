@@ -18,6 +18,7 @@ mod patterns;
 mod residence;
 mod seen;
 mod sub_patches;
+mod tagged;
 mod tessellated;
 
 pub use backend::Backend;

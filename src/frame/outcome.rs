@@ -44,7 +44,11 @@ impl Outcome {
     pub fn of(pass: &Pass, records: &[abi::PatchDraw], cut: Cut) -> Outcome {
         let mut outcome = Outcome::default();
         let slots = records.iter().enumerate();
-        for (patch, record) in slots.filter(|&(patch, _)| !pass.is_vacant(patch)) {
+        // Those that are not drawn at the depth of the cut have no level, and nothing culls them.
+        let is_decided = |record: &abi::PatchDraw| record.inside > 0.0 || record.slot != 0;
+        for (patch, record) in
+            slots.filter(|&(patch, record)| !pass.is_vacant(patch) && is_decided(record))
+        {
             let levels = Levels {
                 domain: pass.domain,
                 cells: [1; 2],

@@ -1,6 +1,8 @@
 //! What a list draws whose patches may have more segments than a tessellator makes: each patch, or each of its pieces. Numbers of these stand in the place of
 //! patches' then. They come in the order of patches, one at least of each, so that none is below its patch's.
 
+use std::ops::Range;
+
 use rustc_hash::FxHashMap;
 
 use crate::abi;
@@ -74,6 +76,20 @@ impl<'a> Drawn<'a> {
     pub fn count(&self) -> usize {
         self.sub_patches
             .map_or_else(|| self.pass.extent(), <[_]>::len)
+    }
+
+    /// The numbers between which all is that is drawn. Of methods that refine as deep as a frame needs, patches stand in the order of depths, and few may be drawn.
+    pub fn range(&self) -> Range<usize> {
+        let all = 0..self.count();
+        if !self.pass.is_dynamic() {
+            return all;
+        }
+        let is_drawn = |&number: &usize| self.whole(number).is_some();
+        let last = all.clone().rev().find(is_drawn);
+        let first = all.clone().find(is_drawn);
+        first
+            .zip(last)
+            .map_or(0..0, |(first, last)| first..last + 1)
     }
 
     /// The patch of a number.

@@ -4,6 +4,7 @@ use ash::vk;
 
 use crate::abi;
 use crate::error::Result;
+use crate::frame::DrawList;
 use crate::gpu::sets::STAGES;
 use crate::gpu::shaders::{Embedded, Modules};
 use crate::gpu::{Layout, Pose, Tables, failed};
@@ -61,6 +62,38 @@ impl Pose {
         pipeline: &PointPipeline,
         tables: &Tables,
     ) {
+        // SAFETY: this function's contract.
+        unsafe { self.cmd_some_points(device, cmd, layout, pipeline, (tables, None)) };
+    }
+
+    /// The same of the points alone that a draw list needs: of methods that refine as deep as a frame needs, those of its depths; of others all. Before another list is drawn,
+    /// its points are computed.
+    ///
+    /// # Safety
+    /// As [`cmd_points`](Self::cmd_points); `list` is of what these tables were made of.
+    pub unsafe fn cmd_points_of(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &PointPipeline,
+        (tables, list): (&Tables, &DrawList),
+    ) {
+        let depths = list.depths();
+        // SAFETY: this function's contract.
+        unsafe { self.cmd_some_points(device, cmd, layout, pipeline, (tables, depths)) };
+    }
+
+    /// # Safety
+    /// As [`cmd_points`](Self::cmd_points).
+    unsafe fn cmd_some_points(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &PointPipeline,
+        (tables, depths): (&Tables, Option<&[u32]>),
+    ) {
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let prepared = tables.prepared();
         if prepared.passes.is_empty() {
@@ -69,17 +102,22 @@ impl Pose {
         let sets = [tables.set(0), self.set()];
         let readers = self.readers();
         let mut before = readers | compute;
-        for step in prepared.points.steps.iter().filter(|step| step.count > 0) {
-            let constants = bytemuck::bytes_of(step);
-            let groups = step.count.div_ceil(abi::POINT_INVOCATIONS);
+        for parts in prepared.points.steps_at(depths) {
             let bind = vk::PipelineBindPoint::COMPUTE;
             // SAFETY: this function's contract.
             unsafe {
                 cmd_points_barrier(device, cmd, before, compute);
                 device.cmd_bind_pipeline(cmd, bind, pipeline.pipeline);
                 device.cmd_bind_descriptor_sets(cmd, bind, layout.pipeline(), 0, &sets, &[]);
-                device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
-                device.cmd_dispatch(cmd, groups, 1, 1);
+            }
+            for part in &parts {
+                let constants = bytemuck::bytes_of(part);
+                let groups = part.count.div_ceil(abi::POINT_INVOCATIONS);
+                // SAFETY: as above.
+                unsafe {
+                    device.cmd_push_constants(cmd, layout.pipeline(), STAGES, 0, constants);
+                    device.cmd_dispatch(cmd, groups, 1, 1);
+                }
             }
             before = compute;
         }

@@ -330,6 +330,26 @@ impl TessellatedSurface {
         }
     }
 
+    /// As [`Pose::cmd_points_of`].
+    ///
+    /// # Safety
+    /// As there.
+    pub unsafe fn cmd_points_of(
+        &self,
+        device: &ash::Device,
+        cmd: vk::CommandBuffer,
+        layout: &Layout,
+        pipeline: &PointPipeline,
+        list: &DrawList,
+    ) {
+        let given = (&self.tables, list);
+        // SAFETY: this function's contract; the pose was made for these tables.
+        unsafe {
+            self.pose
+                .cmd_points_of(device, cmd, layout, pipeline, given)
+        }
+    }
+
     /// As [`FrameSlot::write_draws`].
     ///
     /// # Errors

@@ -60,6 +60,7 @@ pub const METHOD: Method = Method {
     uses_tables: true,
     isolates: false,
     aggregates: false,
+    dynamic: false,
     covers: covered::check,
     prepare,
     edits: None,

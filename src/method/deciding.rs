@@ -46,7 +46,7 @@ pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] 
         .enumerate()
         .map(|(patch, sides)| abi::PatchSides {
             sides: sides.map(|side| lists.place(side)),
-            hull: pass.hull(patch).len() as u32 | spline,
+            hull: pass.hull(patch).len() as u32 | spline | pass.stage_flags(patch),
         });
     let records: Vec<abi::PatchSides> = records.collect();
     let ends = match number {

@@ -7,9 +7,9 @@
 //! the paper cuts such patches into up to four domains instead (section 3.2), since fractional levels do not halve. What is irregular at the last level has an
 //! end cap (`fas/caps.rs`); the paper stops where the tess level is 1, and only corners, which are on the limit, are drawn of it: `IsolationOptions::level_for`.
 
-mod caps;
-mod level;
-mod levels;
+pub(super) mod caps;
+pub(super) mod level;
+pub(super) mod levels;
 
 use glam::{Vec2, Vec3};
 
@@ -41,6 +41,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: true,
     aggregates: false,
+    dynamic: false,
     covers: check,
     prepare,
     edits: None,
@@ -53,7 +54,7 @@ const MOST_AROUND: usize = 512;
 ///
 /// # Errors
 /// [`Error::Input`] with the vertex or face.
-fn check(model: &Model) -> Result<()> {
+pub(super) fn check(model: &Model) -> Result<()> {
     let topology = model.topology();
     let refuse = |place: Place, count: usize, remedy: &str| {
         let problem = format!(
@@ -80,23 +81,28 @@ fn check(model: &Model) -> Result<()> {
 
 fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {
     let isolation = options.isolation.check()?;
+    let passes = passes("fas", isolation.caps);
+    Ok(Levels::new(model, passes, isolation.caps).refine(isolation.level))
+}
+
+/// Passes of B-splines, which `splines` evaluates, of such with corners of their own, of bicubic end caps and of those of a kind.
+pub(super) fn passes(splines: &'static str, caps: EndCaps) -> [Pass; 4] {
     let pass = |shader, twin| Pass::new(shader, Domain::Quads, 1, twin);
     let capped = |shader, twin| Pass {
         caps: true,
         ..pass(shader, twin)
     };
-    let [splines, cornered] =
-        ["fas", "fas_corners"].map(|shader| pass(shader, spline).with_tangents(spline_tangents));
     let bicubic = capped("fas_caps", cap).with_tangents(cap_tangents);
-    let own = match isolation.caps {
+    let own = match caps {
         // There are none beside those.
         EndCaps::Bicubic => bicubic.clone(),
         EndCaps::Gregory => capped("fas_gregory", gregory).with_tangents(gregory_tangents),
         EndCaps::Legacy => capped("fas_legacy", legacy).with_tangents(legacy_tangents),
-        EndCaps::Bspline => capped("fas", spline).with_tangents(spline_tangents),
+        EndCaps::Bspline => capped(splines, spline).with_tangents(spline_tangents),
     };
-    let passes = [splines, cornered, bicubic, own];
-    Ok(Levels::new(model, passes, isolation.caps).refine(isolation.level))
+    let [splines, cornered] =
+        [splines, "fas_corners"].map(|shader| pass(shader, spline).with_tangents(spline_tangents));
+    [splines, cornered, bicubic, own]
 }
 
 /// The points of a patch.
@@ -105,7 +111,7 @@ fn points<const N: usize>(pass: &Pass, given: &Controls, patch: usize) -> [Vec3;
     std::array::from_fn(|i| given.points[controls[i] as usize].position.into())
 }
 
-fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
+pub(super) fn spline(pass: &Pass, given: &Controls, patch: usize, uv: Vec2) -> SurfacePoint {
     let points: [Vec3; 16] = points(pass, given, patch);
     let is_cap = false;
     point(

@@ -30,6 +30,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: false,
     aggregates: false,
+    dynamic: false,
     covers: method::every_mesh,
     prepare,
     edits: None,

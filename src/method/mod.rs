@@ -55,6 +55,8 @@ mod change;
 mod children;
 #[cfg(feature = "vulkan")]
 mod deciding;
+mod depths;
+mod dfas;
 mod displacement;
 mod edge_field;
 mod editable;
@@ -81,6 +83,7 @@ mod refine;
 mod regular;
 mod spline;
 mod spokes;
+mod stage;
 mod stam;
 mod surface;
 mod table;
@@ -106,6 +109,7 @@ pub use cell::Cell;
 pub use change::{PassChange, Update};
 #[cfg(feature = "vulkan")]
 pub(crate) use deciding::deciding_tables;
+pub(crate) use depths::depth_at;
 pub use displacement::Displacement;
 pub use editable::Editable;
 pub use macro_faces::{MacroFace, MacroFaceCounts, MacroFaces};
@@ -197,6 +201,8 @@ pub struct Method {
     pub isolates: bool,
     /// Whether it goes by [`MethodOptions::macro_faces`].
     pub aggregates: bool,
+    /// Whether it refines as deep as each frame needs, everywhere by itself where the host decides; see [`Prepared::is_dynamic`].
+    pub dynamic: bool,
     /// Refuses meshes that it cannot draw, by a place in them.
     covers: fn(&Model) -> Result<()>,
     /// Prepares a model of one of its schemes; [`Method::prepare`] refuses others.
@@ -296,6 +302,7 @@ pub const METHODS: &[Method] = &[
     qas::METHOD,
     bft::METHOD,
     fas::METHOD,
+    dfas::METHOD,
     gregory::METHOD,
     acc::METHOD,
     stam::METHOD,
@@ -405,6 +412,8 @@ pub struct Prepared {
     pub plans: Option<PlanStatistics>,
     /// Which faces are drawn together.
     pub macro_faces: MacroFaces,
+    /// How many irregularities have depths of their own.
+    irregularities: u32,
     /// Tells what a cache holds of its control points.
     cached: Option<fn(&Prepared, u32) -> CachedPoints>,
     /// The same of what is edited.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::abi;
 use crate::method::cell::Cell;
 use crate::method::ptex;
+use crate::method::stage::Stage;
 use crate::method::surface::{Controls, SurfacePoint};
 use crate::method::table::Table;
 use crate::tessellation::{Domain, cells};
@@ -54,6 +55,8 @@ pub struct Pass {
     pub(super) hull: Option<fn(&Pass, usize) -> u32>,
     /// Whether these are the control points of a bicubic B-spline, row by row along u.
     pub(super) is_spline: bool,
+    /// When each patch is drawn; empty where all always are.
+    pub(super) stages: Vec<Stage>,
     /// Of how many control vertices and points it was made. Filled in by [`Method::prepare`](crate::method::Method::prepare).
     pub(super) needs: [usize; 2],
 }
@@ -98,6 +101,7 @@ impl Pass {
             face_at: None,
             hull: None,
             is_spline: false,
+            stages: Vec::new(),
             needs: [0; 2],
         }
     }

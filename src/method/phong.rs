@@ -37,6 +37,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: false,
     aggregates: false,
+    dynamic: false,
     covers: vertices::whole_faces,
     prepare,
     edits: None,

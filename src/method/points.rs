@@ -13,6 +13,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::abi::{self, Point, PointRow, PointStep, PointTerm};
+use crate::method::stage::Span;
 use crate::method::surface::{CLEAR, Tangents, UNIT, reach};
 use crate::method::unit::{factor_for, greatest_exponent, sized, unit};
 use crate::subdivision::{Blend, Mask};
@@ -28,6 +29,8 @@ pub struct Points {
     pub rows: Vec<PointRow>,
     /// What the rows consist of.
     pub terms: Vec<PointTerm>,
+    /// Of steps of which frames need parts.
+    pub(super) spans: Vec<Span>,
 }
 
 /// What a point becomes in a step. Masks of a limit may name different vertices.
@@ -112,6 +115,29 @@ impl Points {
         for mask in masks {
             self.push(Row::Blend(&ascending(mask)));
         }
+    }
+
+    /// Says of the last step where the rows of each irregularity end, and at which depths they are needed.
+    pub(super) fn span(&mut self, depths: [u32; 2], ends: Vec<u32>) {
+        let step = self.steps.len() - 1;
+        self.spans.push(Span { step, depths, ends });
+    }
+
+    /// The steps, each of parts that do not wait for one another; at depths of irregularities those that are needed, else all.
+    pub(crate) fn steps_at(&self, depths: Option<&[u32]>) -> Vec<Vec<PointStep>> {
+        let parts = |(number, step): (usize, &PointStep)| {
+            let span = self.spans.iter().find(|span| span.step == number);
+            match (span, depths) {
+                (Some(span), Some(depths)) => span.needed(step, depths),
+                _ => vec![*step],
+            }
+        };
+        let steps = self.steps.iter().enumerate().map(parts);
+        let steps = steps.map(|mut parts| {
+            parts.retain(|part| part.count > 0);
+            parts
+        });
+        steps.filter(|parts| !parts.is_empty()).collect()
     }
 
     /// The points of control vertices, of which none that is named lacks.

@@ -39,6 +39,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: false,
     aggregates: false,
+    dynamic: false,
     covers: bounded::check,
     prepare,
     edits: None,

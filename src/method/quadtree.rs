@@ -63,6 +63,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: false,
     aggregates: true,
+    dynamic: false,
     covers: bounded::check,
     prepare,
     edits: Some(editable),

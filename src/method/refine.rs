@@ -43,6 +43,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: true,
     aggregates: false,
+    dynamic: false,
     covers: method::every_mesh,
     prepare,
     edits: None,

@@ -43,6 +43,7 @@ pub const METHOD: Method = Method {
     uses_tables: false,
     isolates: false,
     aggregates: false,
+    dynamic: false,
     covers: net::check,
     prepare,
     edits: None,

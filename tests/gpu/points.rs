@@ -32,7 +32,7 @@ fn device_and_host_compute_points_with_the_same_bits() {
             let start = gpu.load(&model, prepared, workarounds, options);
             let mut start = start.expect("nothing needs the ring");
             let positions: Vec<[f32; 3]> = moved.positions().iter().map(|p| p.to_array()).collect();
-            start.move_on_device(&positions);
+            start.move_on_device(&positions, at);
             let by_device = start.capture(at, Fill::Discard).expect("it is drawn");
             let made = gpu.load(&moved, prepare(&moved, method.name), workarounds, options);
             let by_host = made.expect("as before").capture(at, Fill::Discard);
@@ -68,7 +68,7 @@ fn normals_know_no_size_of_what_an_engine_writes() {
             let mut drawn = |exponent: i32| {
                 let grown = |p: Vec3| (p * 2f32.powi(exponent)).to_array();
                 let positions: Vec<[f32; 3]> = model.positions().into_iter().map(grown).collect();
-                loaded.move_on_device(&positions);
+                loaded.move_on_device(&positions, at);
                 let frame = loaded.capture(at, Fill::Discard).expect("it is drawn");
                 frame.passes.concat()
             };

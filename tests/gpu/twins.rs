@@ -2,7 +2,10 @@
 
 use hullform::gpu::{Cut, Fill};
 use hullform::mesh::Model;
-use hullform::method::{METHODS, Method, MethodOptions, Reproduces, TableNormals, TableOptions};
+use hullform::method::{
+    EndCaps, IsolationOptions, METHODS, Method, MethodOptions, Reproduces, TableNormals,
+    TableOptions,
+};
 use hullform::tessellation::Spacing;
 
 use crate::common;
@@ -126,6 +129,52 @@ fn tables_with_every_option_are_those_of_the_twins() {
                 let what = format!("{name} {} {level} {normals:?}", method.name);
                 assert_near(&what, worst, 1e-6, 0.1);
             }
+        }
+    }
+    gpu.finish();
+}
+
+/// Levels that cut caps into several segments, so that their insides are drawn.
+#[test]
+fn end_caps_of_every_kind_are_those_of_the_twins() {
+    let Some(gpu) = Gpu::open() else { return };
+    let all = [
+        EndCaps::Bicubic,
+        EndCaps::Gregory,
+        EndCaps::Legacy,
+        EndCaps::Bspline,
+    ];
+    let cuts = [cut(8.0, Spacing::Equal), cut(5.0, Spacing::FractionalEven)];
+    for (name, caps) in ["cube", "ngons", "hull"]
+        .into_iter()
+        .flat_map(|name| all.map(|caps| (name, caps)))
+    {
+        let model = shapes::built_in(name);
+        let capped =
+            |method: &&Method| matches!(method.contract.reproduces, Reproduces::LimitBesideCaps(_));
+        for method in able(&model).filter(capped) {
+            let options = IsolationOptions { level: 1, caps }.into();
+            let (mut worst, mut inside) = (Worst::default(), 0);
+            each_cut_with(
+                &gpu,
+                &model,
+                method,
+                options,
+                &cuts,
+                |_, prepared, frame| {
+                    worst.take(from_twin(&model, prepared, frame, 1));
+                    let passes = prepared.passes.iter().zip(&frame.passes);
+                    let capped = passes.filter(|(pass, _)| pass.caps);
+                    inside += capped.map(|(_, points)| points.len()).sum::<usize>();
+                },
+            );
+            assert!(inside > 500, "{name} {caps:?}: {inside} vertices of caps");
+            assert_near(
+                &format!("{name} {} {caps:?}", method.name),
+                worst,
+                1e-6,
+                0.1,
+            );
         }
     }
     gpu.finish();

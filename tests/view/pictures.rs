@@ -27,7 +27,7 @@ const WALKS: [(&str, &str); 4] = [
     ("builtin:ngons", "c mb c o bc brc lc zc ac w"),
     (
         "builtin:cube",
-        "w wmmmc bc rc lc mb c kc mb oc mb c mzc mc mc mc mc",
+        "w wmmmc bc rc lc mb c kc mb oc mb c mzc mc mc mc mc mc",
     ),
     ("builtin:hull", "MM mmc bc bc oc rc c"),
 ];

@@ -19,11 +19,16 @@ pub struct Wanted {
 
 impl Wanted {
     /// Who decides for levels up to `level`: the device, where there is something to decide and it can. Without it levels go by depth tags, and patches are
-    /// drawn as they are.
+    /// drawn as they are; so they do of methods that refine as deep as a frame needs (`is_dynamic`), which the host alone decides for each place, but where patches are left out.
     ///
     /// # Errors
     /// [`Error::Option`] for patches that are to be left out, which nobody does then.
-    pub fn decides(self, backend: Backend, slots: Slots, level: f32) -> Result<Decides> {
+    pub fn decides(
+        self,
+        (backend, is_dynamic): (Backend, bool),
+        slots: Slots,
+        level: f32,
+    ) -> Result<Decides> {
         let whole = level <= backend.greatest_level();
         let able = backend == Backend::Tessellator && slots == Slots::Counter && whole;
         if !able && self.culling.needs_decisions() {
@@ -33,7 +38,8 @@ impl Wanted {
                 remedy: "leave out --backend, --slots and levels above 64, or frustum and small".into(),
             });
         }
-        Ok(match able && self.is_anything() {
+        let by_place = is_dynamic && !self.culling.needs_decisions();
+        Ok(match able && !by_place && self.is_anything() {
             true => Decides::Device,
             false => Decides::Host,
         })
@@ -104,7 +110,8 @@ mod tests {
             adaptive: None,
             culling,
         };
-        let decides = |wanted: Wanted, backend, slots| wanted.decides(backend, slots, 8.0).ok();
+        let decides =
+            |wanted: Wanted, backend, slots| wanted.decides((backend, false), slots, 8.0).ok();
         let (all, some) = (Backend::Tessellator, Backend::Pattern);
         let nothing = Wanted::default();
         assert_eq!(decides(nothing, all, Slots::Counter), Some(Decides::Host));
@@ -117,7 +124,10 @@ mod tests {
         };
         assert_eq!(decides(tagged, some, Slots::Counter), Some(Decides::Host));
         assert_eq!(decides(tagged, all, Slots::Counter), Some(Decides::Device));
-        let above = |wanted: Wanted| wanted.decides(all, Slots::Counter, 65.0).ok();
+        let above = |wanted: Wanted| wanted.decides((all, false), Slots::Counter, 65.0).ok();
         assert_eq!((above(tagged), above(wanted)), (Some(Decides::Host), None));
+        let dynamic = |wanted: Wanted| wanted.decides((all, true), Slots::Counter, 8.0).ok();
+        assert_eq!(dynamic(tagged), Some(Decides::Host));
+        assert_eq!(dynamic(wanted), Some(Decides::Device));
     }
 }

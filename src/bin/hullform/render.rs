@@ -407,7 +407,7 @@ fn draw_with(
         adaptive,
         culling: scene.culling,
     };
-    let decides = wanted.decides(backend, scene.slots, cut.level)?;
+    let decides = wanted.decides((backend, prepared.is_dynamic()), scene.slots, cut.level)?;
     // Slots from the host do not depend on who runs how often, and a cache has none.
     let (slots, residence) = match decides {
         Decides::Host if again => (Slots::Host, residence),

@@ -40,14 +40,9 @@ impl<'a> Levels<'a> {
         [splines, cornered, caps, own_caps]: [Pass; 4],
         kind: EndCaps,
     ) -> Levels<'a> {
-        let mut points = Points::default();
-        points.begin(abi::POINTS_BLEND, 0);
-        for vertex in 0..model.topology().vertex_count() as u32 {
-            points.push(Row::Blend(&Mask::from_slice(&[(vertex, 1.0)])));
-        }
         Levels {
             model,
-            points,
+            points: control_vertices(model),
             splines,
             cornered,
             caps,
@@ -152,18 +147,7 @@ impl<'a> Levels<'a> {
         spline: &BsplinePatch,
         mirrored: &mut FxHashMap<ControlPoint, u32>,
     ) {
-        let points = &mut self.points;
-        let mut number = |&point: &ControlPoint| match point {
-            ControlPoint::Vertex(vertex) => level.first_point + vertex,
-            _ => *mirrored
-                .entry(point)
-                .or_insert_with(|| level.push(points, &point.mask())),
-        };
-        let mut controls: Vec<u32> = spline.points.iter().map(&mut number).collect();
-        let plan = spline.crease.map_or(0, |(edge, sharpness)| {
-            controls.push(sharpness.to_bits());
-            (edge + 1) << abi::PIECE_CREASE_SHIFT
-        });
+        let (controls, plan) = spline_controls(level, spline, mirrored, &mut self.points);
         let record = record(self.model, level, cell, plan);
         let pass = match record.flags & (abi::PATCH_NEARBY_CORNER * 15) {
             0 => &mut self.splines,
@@ -171,6 +155,37 @@ impl<'a> Levels<'a> {
         };
         cell.add(pass, self.model, &controls, record);
     }
+}
+
+/// The points of the control vertices themselves.
+pub fn control_vertices(model: &Model) -> Points {
+    let mut points = Points::default();
+    points.begin(abi::POINTS_BLEND, 0);
+    for vertex in 0..model.topology().vertex_count() as u32 {
+        points.push(Row::Blend(&Mask::from_slice(&[(vertex, 1.0)])));
+    }
+    points
+}
+
+/// The control points of a B-spline, behind which the sharpness of its crease stands, and the edge of that in its plan. Mirrored points are added once.
+pub fn spline_controls(
+    level: &Level<'_>,
+    spline: &BsplinePatch,
+    mirrored: &mut FxHashMap<ControlPoint, u32>,
+    points: &mut Points,
+) -> (Vec<u32>, u32) {
+    let mut number = |&point: &ControlPoint| match point {
+        ControlPoint::Vertex(vertex) => level.first_point + vertex,
+        _ => *mirrored
+            .entry(point)
+            .or_insert_with(|| level.push(points, &point.mask())),
+    };
+    let mut controls: Vec<u32> = spline.points.iter().map(&mut number).collect();
+    let plan = spline.crease.map_or(0, |(edge, sharpness)| {
+        controls.push(sharpness.to_bits());
+        (edge + 1) << abi::PIECE_CREASE_SHIFT
+    });
+    (controls, plan)
 }
 
 /// The flags of a face: beyond which edges lie two patches of the next level; and where it has not the same normals as the faces beside it, at infinitely
@@ -212,7 +227,7 @@ fn is_alone(topology: &Topology, face: u32, corner: u32) -> bool {
 }
 
 /// The patch of a face but for its control points.
-fn record(model: &Model, level: &Level<'_>, cell: &Cell, plan: u32) -> abi::Patch {
+pub fn record(model: &Model, level: &Level<'_>, cell: &Cell, plan: u32) -> abi::Patch {
     let record = cell.record(model, &level.topology);
     abi::Patch {
         flags: record.flags | flags(level, cell.face),

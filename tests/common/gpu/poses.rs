@@ -1,15 +1,18 @@
 //! Positions that an engine moves itself.
 
 use ash::vk;
+use hullform::gpu::Cut;
 
 use super::Loaded;
 
 impl Loaded<'_> {
-    /// Moves the control vertices on the device, as an engine that skins its mesh there would, and computes what depends on them.
-    pub fn move_on_device(&self, positions: &[[f32; 3]]) {
+    /// Moves the control vertices on the device, as an engine that skins its mesh there would, and computes what a cut needs of what depends on them.
+    pub fn move_on_device(&self, positions: &[[f32; 3]], cut: Cut) {
         let (device, layout) = (self.gpu.device.raw(), self.gpu.layout());
         let pipeline = self.point_pipeline();
         let pipeline = pipeline.expect("the shipped module makes a pipeline");
+        let list = self.surface().draw_list(cut, None);
+        let list = list.expect("it is drawn so");
         let barrier = vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
             .dst_access_mask(vk::AccessFlags::SHADER_READ);
@@ -24,7 +27,8 @@ impl Loaded<'_> {
                 let buffer = self.surface().position_buffer();
                 device.cmd_update_buffer(cmd, buffer, 0, bytemuck::cast_slice(positions));
                 device.cmd_pipeline_barrier(cmd, transfer, readers, none, &[barrier], &[], &[]);
-                self.surface().cmd_points(device, cmd, layout, &pipeline);
+                self.surface()
+                    .cmd_points_of(device, cmd, layout, &pipeline, &list);
             }
             Ok(())
         });

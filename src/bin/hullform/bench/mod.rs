@@ -119,15 +119,21 @@ impl Arguments {
         }
     }
 
+    /// Whether a method is asked for whose depths the host decides: then it decides levels for all, so that they are the same.
+    fn is_dynamic(&self) -> bool {
+        let mut asked = self.methods.iter().map(|name| method(name));
+        asked.any(|asked| asked.is_ok_and(|method| method.dynamic))
+    }
+
     /// # Errors
     /// [`Error::Option`] for decisions that nobody takes.
     fn check(&self, global: &Global) -> Result<()> {
         let slots = drawing::slots(global.slots);
         let wanted = self.wanted();
         let greatest = self.levels.iter().copied().fold(1.0, f32::max);
-        let decides = |backend| wanted.decides(backend, slots, greatest);
+        let decides = |backend| wanted.decides((backend, self.is_dynamic()), slots, greatest);
         let all: Result<Vec<Decides>> = self.backend.iter().map(|&b| decides(b.into())).collect();
-        if wanted.is_anything() && all?.contains(&Decides::Host) {
+        if wanted.is_anything() && all?.contains(&Decides::Host) && !self.is_dynamic() {
             return Err(Error::Option {
                 option: if self.adaptive.is_some() {
                     "--adaptive"

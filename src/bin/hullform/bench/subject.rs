@@ -15,7 +15,7 @@ use hullform::{Error, Result};
 
 use super::Arguments;
 use super::row::{Row, Work};
-use crate::adaptive::Seen;
+use crate::adaptive::{Adaptive, Seen};
 use crate::drawing::{self, Drawing};
 use crate::gpu::Gpu;
 use crate::options::{Global, Size};
@@ -91,7 +91,8 @@ impl<'a> Subject<'a> {
         let device_counts = gpu.device.info().support.optional.pipeline_statistics_query
             && backend == Backend::Tessellator;
         let slots = drawing::slots(global.slots);
-        let decides = arguments.wanted().decides(backend, slots, greatest)?;
+        let decides = arguments.wanted();
+        let decides = decides.decides((backend, arguments.is_dynamic()), slots, greatest)?;
         let options = SurfaceOptions {
             backend,
             residence,
@@ -124,8 +125,15 @@ impl<'a> Subject<'a> {
         let style = Style::new(options, spacing, Fill::Discard);
         let list = |&level: &f32| {
             let cut = Cut { level, spacing };
+            // Whom the device decides for has no tags.
+            let adaptive = arguments.adaptive.filter(|_| decides == Decides::Host);
+            let tags = |adaptive: Adaptive| {
+                let outline = &drawing.prepared().outline;
+                adaptive.tags(outline, &model.positions(), level, seen(model, arguments))
+            };
+            let tags = adaptive.map(tags).transpose()?;
             Ok(Level {
-                list: drawing.surface().draw_list(cut, None)?,
+                list: drawing.surface().draw_list(cut, tags.as_ref())?,
                 work: None,
                 cpu: Vec::new(),
                 gpu: Vec::new(),
@@ -204,7 +212,7 @@ impl<'a> Subject<'a> {
         let cached = match (fills, &self.points) {
             (true, _) => self.drawing.cache_after(list, begin)?,
             (_, Some(pipeline)) => {
-                self.compute_points(pipeline, begin)?;
+                self.compute_points(pipeline, list, begin)?;
                 0
             }
             (false, None) => 0,
@@ -229,10 +237,11 @@ impl<'a> Subject<'a> {
         Ok((cached, counted))
     }
 
-    /// Computes points, after what else is recorded: in a submission of its own, as above.
+    /// Computes the points that a list needs, after what else is recorded: in a submission of its own, as above.
     fn compute_points(
         &self,
         pipeline: &PointPipeline,
+        list: &DrawList,
         begin: impl FnOnce(vk::CommandBuffer),
     ) -> Result<()> {
         let (device, layout) = (&self.gpu.device, self.bench.layout());
@@ -241,7 +250,7 @@ impl<'a> Subject<'a> {
             // SAFETY: recording on the device that made everything, outside of a render pass; control vertices are there since the upload.
             unsafe {
                 let surface = self.drawing.surface();
-                surface.cmd_points(device.raw(), cmd, layout, pipeline);
+                surface.cmd_points_of(device.raw(), cmd, layout, pipeline, list);
             }
             Ok(())
         })
@@ -290,15 +299,14 @@ impl<'a> Subject<'a> {
             Residence::Cache if cached > 0 => self.cached_products(list),
             Residence::Cache => 0,
         };
-        let points = &self.drawing.prepared().points;
         let [computed, terms] = match self.points {
-            Some(_) => [points.count as usize, points.terms.len()],
+            Some(_) => list.computed(self.drawing.prepared()),
             None => [0; 2],
         };
         Ok(Work {
             evaluations,
-            points: u64::from(counters.points) + u64::from(cached) + computed as u64,
-            products: products + terms as u64,
+            points: u64::from(counters.points) + u64::from(cached) + computed,
+            products: products + terms,
             draws: batches().map(|batch| batch.draws().len() as u64).sum(),
             barriers: batches().filter(|batch| batch.waits()).count() as u64,
             decided,

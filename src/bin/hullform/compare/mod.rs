@@ -2,7 +2,7 @@
 
 mod costs;
 pub(crate) mod errors;
-mod page;
+pub(crate) mod page;
 pub(crate) mod picture;
 pub(crate) mod scale;
 

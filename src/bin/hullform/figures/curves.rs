@@ -24,6 +24,7 @@ const LEVELS: [u32; 5] = [1, 2, 4, 8, 16];
 const QUICK: [u32; 3] = [1, 4, 8];
 /// The triangles that are looked at, of each method and level: the truth takes its time.
 const TRIANGLES: usize = 4000;
+const QUICK_TRIANGLES: usize = 500;
 
 /// A method at a level.
 struct Point {
@@ -39,7 +40,10 @@ struct Point {
 
 /// Measures all methods that can draw the model, and writes a plot and a table; their names.
 pub fn make(curves: &Curves, words: &Words, global: &Global) -> Result<Vec<String>, String> {
-    let levels: &[u32] = if words.quick { &QUICK } else { &LEVELS };
+    let (levels, most): (&[u32], _) = match words.quick {
+        true => (&QUICK, QUICK_TRIANGLES),
+        false => (&LEVELS, TRIANGLES),
+    };
     let named = words.arguments(curves.model)?.remove(0);
     let shape = Shape {
         scheme: Some(curves.scheme.into()),
@@ -51,7 +55,7 @@ pub fn make(curves: &Curves, words: &Words, global: &Global) -> Result<Vec<Strin
     let mut points = Vec::new();
     for method in METHODS {
         for &level in levels {
-            points.extend(measure(method, &model, &truth, level));
+            points.extend(measure(method, &model, &truth, [level as usize, most]));
         }
     }
     let costs = costs(curves, &named, levels, words, global)?;
@@ -102,8 +106,13 @@ fn costs(
     Ok(Results([("bench", value)].into()))
 }
 
-/// The distance between the middles of triangles and the limit there; None where the method refuses the model.
-fn measure(method: &Method, model: &Model, truth: &LimitSurface, level: u32) -> Option<Point> {
+/// The distance between the middles of triangles and the limit there, of so many triangles at most; None where the method refuses the model.
+fn measure(
+    method: &Method,
+    model: &Model,
+    truth: &LimitSurface,
+    [level, most]: [usize; 2],
+) -> Option<Point> {
     let isolation = IsolationOptions {
         level: IsolationOptions::level_for(level as f32),
         ..IsolationOptions::default()
@@ -126,7 +135,7 @@ fn measure(method: &Method, model: &Model, truth: &LimitSurface, level: u32) -> 
                 .map(move |corners| (pass, patch, corners))
         })
         .collect();
-    let step = triangles.len().div_ceil(TRIANGLES).max(1);
+    let step = triangles.len().div_ceil(most).max(1);
     // A stride that shares nothing with the size of a patch would do; an odd one nearly does.
     let chosen: Vec<_> = triangles.iter().step_by(step | 1).collect();
     let places: Vec<(usize, [f64; 2])> = chosen
@@ -151,7 +160,7 @@ fn measure(method: &Method, model: &Model, truth: &LimitSurface, level: u32) -> 
     }
     (count > 0).then(|| Point {
         method: method.name,
-        level,
+        level: level as u32,
         triangles: triangles.len(),
         rms: (squares / f64::from(count)).sqrt(),
         maximum,
@@ -193,90 +202,149 @@ fn table(points: &[Point]) -> String {
     text
 }
 
-/// Both plots side by side, all axes logarithmic.
+/// Whole decades of errors, and of costs above them: both in one plot with lines that do not cross.
+struct Decades {
+    errors: [f64; 2],
+    costs: [f64; 2],
+}
+
+impl Decades {
+    fn of(points: &[Point]) -> Decades {
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            let (low, high) = values
+                .filter(|&value| value > 0.0)
+                .fold((f64::INFINITY, 0.0f64), |(low, high), x| {
+                    (low.min(x), high.max(x))
+                });
+            match low.is_finite() {
+                true => [low.log10().floor(), (high.log10().floor() + 1.0)],
+                false => [0.0, 1.0],
+            }
+        };
+        Decades {
+            errors: range(&mut points.iter().map(|point| point.rms)),
+            costs: range(&mut points.iter().filter_map(|point| point.milliseconds)),
+        }
+    }
+
+    /// What both axes show: a decade is as long on either.
+    fn axes(&self) -> [std::ops::Range<f64>; 2] {
+        let all = self.errors[1] - self.errors[0] + self.costs[1] - self.costs[0];
+        let of = |low: f64| 10f64.powf(low)..10f64.powf(low + all);
+        [of(self.errors[0]), of(self.costs[1] - all)]
+    }
+}
+
+const WIDTH: u32 = 1100;
+const HEIGHT: u32 = 760;
+/// Of the names of methods, beside the plot.
+const NAMES: u32 = 120;
+const FONT: (&str, u32) = ("sans-serif", 15);
+
+/// Errors and costs in one plot, all axes logarithmic: two lines a method, that of its costs dashed.
 fn svg(title: &str, points: &[Point]) -> Result<String, Box<dyn Error>> {
     let mut text = String::new();
     {
-        let root = SVGBackend::with_string(&mut text, (1200, 560)).into_drawing_area();
+        let root = SVGBackend::with_string(&mut text, (WIDTH, HEIGHT)).into_drawing_area();
         root.fill(&WHITE)?;
-        let halves = root.titled(title, ("sans-serif", 18))?.split_evenly((1, 2));
-        let rms = |point: &Point| Some(point.rms);
-        plot(
-            &halves[0],
-            "distance from the limit over the diagonal, RMS",
-            points,
-            SeriesLabelPosition::LowerLeft,
-            rms,
-        )?;
-        plot(
-            &halves[1],
-            "milliseconds a frame, the least",
-            points,
-            SeriesLabelPosition::UpperLeft,
-            |point| point.milliseconds,
-        )?;
+        let root = root.titled(title, ("sans-serif", 18))?;
+        let (plotted, names) = root.split_horizontally(WIDTH - NAMES);
+        let drawn: Vec<(usize, &str)> = (0..)
+            .zip(METHODS.iter().map(|method| method.name))
+            .filter(|(_, name)| points.iter().any(|point| point.method == *name))
+            .collect();
+        plot(&plotted, points, &drawn)?;
+        for (place, &(number, name)) in (0..).zip(&drawn) {
+            let y = 30 + 24 * place;
+            let line = vec![(4, y), (28, y)];
+            names.draw(&PathElement::new(line, colour(number).stroke_width(3)))?;
+            names.draw(&Text::new(name, (34, y - 8), ("sans-serif", 16)))?;
+        }
         root.present()?;
     }
     Ok(text)
 }
 
+/// A method's.
+fn colour(number: usize) -> RGBAColor {
+    Palette99::pick(number).to_rgba()
+}
+
 fn plot(
     area: &DrawingArea<SVGBackend, plotters::coord::Shift>,
-    what: &str,
     points: &[Point],
-    legend: SeriesLabelPosition,
-    value: impl Fn(&Point) -> Option<f64>,
+    drawn: &[(usize, &str)],
 ) -> Result<(), Box<dyn Error>> {
-    let known = |point: &Point| value(point).filter(|&value| value > 0.0);
-    let range = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
-        match low.is_finite() {
-            true => (low / 1.5)..(high * 1.5).max(10.0 * low),
-            false => 1.0..10.0,
-        }
-    };
-    let across = range(&mut points.iter().map(|point| point.triangles as f64));
-    let up = range(&mut points.iter().filter_map(known));
+    let triangles = || points.iter().map(|point| point.triangles as f64);
+    let most = triangles().fold(10.0, f64::max) * 1.2;
+    let across = triangles().fold(most, f64::min) / 1.2..most;
+    let [errors, costs] = Decades::of(points).axes();
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(70)
-        .build_cartesian_2d(across.log_scale(), up.log_scale())?;
+        .right_y_label_area_size(70)
+        .build_cartesian_2d(across.clone().log_scale(), errors.log_scale())?
+        .set_secondary_coord(across.log_scale(), costs.log_scale());
+    let power = |value: &f64| format!("1e{:.0}", value.log10());
     chart
         .configure_mesh()
         .x_desc("triangles")
-        .y_desc(what)
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .x_label_formatter(&|x| format!("{x:.0e}"))
+        .y_desc("distance from the limit over the diagonal, RMS (full lines)")
+        .y_label_formatter(&power)
+        .x_label_formatter(&|x| format!("{x:.0}"))
+        .x_labels(5)
+        .light_line_style(TRANSPARENT)
+        .label_style(FONT)
         .draw()?;
-    for (number, method) in METHODS.iter().enumerate() {
-        let of_method = points.iter().filter(|point| point.method == method.name);
-        let line: Vec<(f64, f64)> = of_method
-            .filter_map(|point| Some((point.triangles as f64, known(point)?)))
-            .collect();
-        if line.is_empty() {
-            continue;
-        }
-        let colour = Palette99::pick(number).to_rgba();
-        chart
-            .draw_series(LineSeries::new(line, colour.stroke_width(2)).point_size(3))?
-            .label(method.name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-    }
     chart
-        .configure_series_labels()
-        .position(legend)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK.mix(0.3))
+        .configure_secondary_axes()
+        .y_desc("milliseconds a frame, the least (dashed)")
+        .y_label_formatter(&power)
+        .label_style(FONT)
         .draw()?;
+    for &(number, name) in drawn {
+        let style = colour(number).stroke_width(2);
+        let line = |value: fn(&Point) -> Option<f64>| -> Vec<(f64, f64)> {
+            let own = points.iter().filter(|point| point.method == name);
+            own.filter_map(|point| Some((point.triangles as f64, value(point)?)))
+                .filter(|&(_, value)| value > 0.0)
+                .collect()
+        };
+        let errors = line(|point| Some(point.rms));
+        chart.draw_series(LineSeries::new(errors, style).point_size(3))?;
+        let costs = line(|point| point.milliseconds);
+        chart.draw_secondary_series(DashedLineSeries::new(costs.clone(), 6, 4, style))?;
+        let dots = costs.into_iter().map(|at| Circle::new(at, 3, style));
+        chart.draw_secondary_series(dots)?;
+    }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn errors_stay_below_costs_and_decades_are_as_long() {
+        let point = |rms, milliseconds| Point {
+            method: METHODS[0].name,
+            level: 1,
+            triangles: 2,
+            rms,
+            maximum: rms,
+            milliseconds,
+        };
+        let points = [point(3e-5, Some(20.0)), point(4e-3, Some(150.0))];
+        let [errors, costs] = Decades::of(&points).axes();
+        let place = |range: &std::ops::Range<f64>, value: f64| {
+            (value / range.start).log10() / (range.end / range.start).log10()
+        };
+        assert!(place(&errors, 4e-3) < place(&costs, 20.0));
+        assert!(place(&errors, 3e-5) > 0.0 && place(&costs, 150.0) < 1.0);
+        let decades = [&errors, &costs].map(|range| (range.end / range.start).log10());
+        assert!((decades[0] - decades[1]).abs() < 1e-9, "{decades:?}");
+    }
 
     #[test]
     fn lattices_cover_their_domain() {

@@ -51,6 +51,8 @@ pub enum Writes {
     Facts,
     /// A picture.
     Picture,
+    /// A picture that stands beside the others of the figure, under the step's name.
+    Panel,
     /// A picture, and its results as JSON.
     Both,
     /// A drawing.

@@ -1,5 +1,6 @@
 //! The figures and tables of the three papers, with what they print, a file a paper.
 
+mod peers;
 mod quadratic;
 mod tables;
 mod together;

@@ -7,9 +7,12 @@ use hullform::Result;
 
 use super::figure::{Check, Figure, Made, Make, Results, Step, Verdict, Writes, judge};
 use super::run::{self, Words};
-use super::{Arguments, curves};
+use super::{Arguments, curves, panels};
 use crate::options::Global;
 use crate::output;
+
+/// Of pictures that are to be there soon.
+const QUICK_SIZE: &str = "320x180";
 
 /// What figures are made with.
 pub struct Workshop<'a> {
@@ -92,8 +95,33 @@ impl<'a> Workshop<'a> {
                 Err(reason) => failed.push(reason),
             }
         }
+        if let Err(reason) = self.join(made, steps) {
+            failed.push(reason);
+        }
         failed.dedup();
         (made.checked, made.verdict) = judge(checks, &results, &failed, some, lacks);
+    }
+
+    /// Puts the panels that were made side by side, and these in the place of all.
+    fn join(&self, made: &mut Made, steps: &[Step]) -> std::result::Result<(), String> {
+        let panels = steps.iter().filter(|step| step.writes == Writes::Panel);
+        let panels: Vec<(&str, PathBuf)> = panels
+            .map(|step| (step.name, self.file(&stem(made.id, step), "png")))
+            .filter(|(_, path)| made.files.contains(&name(path)))
+            .collect();
+        if panels.is_empty() {
+            return Ok(());
+        }
+        let path = self.file(made.id, "png");
+        let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+        let joined = panels::side_by_side(&panels)?;
+        output::replace(&path, &joined).map_err(failed)?;
+        for (_, panel) in &panels {
+            made.files.retain(|file| *file != name(panel));
+            std::fs::remove_file(panel).map_err(failed)?;
+        }
+        made.files.push(name(&path));
+        Ok(())
     }
 
     /// Runs a step; what it printed, and the names of what it wrote.
@@ -102,18 +130,27 @@ impl<'a> Workshop<'a> {
         id: &str,
         step: &Step,
     ) -> std::result::Result<(serde_json::Value, Vec<String>), String> {
-        let arguments = self.words.arguments(step.words)?;
-        let stem = format!("{id}-{}", step.name);
+        let mut arguments = self.words.arguments(step.words)?;
+        let has_picture = matches!(step.writes, Writes::Picture | Writes::Both);
+        if self.words.quick && has_picture {
+            arguments.extend(["--size", QUICK_SIZE].map(String::from));
+        }
+        let stem = stem(id, step);
         let files: Vec<(&str, PathBuf)> = match step.writes {
             Writes::Facts => Vec::new(),
-            Writes::Picture | Writes::Both => vec![("--output", self.file(&stem, "png"))],
+            Writes::Picture | Writes::Panel | Writes::Both => {
+                vec![("--output", self.file(&stem, "png"))]
+            }
             Writes::Drawing => vec![("--output", self.file(&stem, "svg"))],
             Writes::Plot => vec![
                 ("--plot", self.file(&stem, "svg")),
                 ("--csv", self.file(&stem, "csv")),
             ],
         };
-        let json = !matches!(step.writes, Writes::Picture | Writes::Drawing);
+        let json = !matches!(
+            step.writes,
+            Writes::Picture | Writes::Panel | Writes::Drawing
+        );
         let value = run::run(self.global, &arguments, &files, json)?;
         let mut names: Vec<String> = files.iter().map(|(_, path)| name(path)).collect();
         if json {
@@ -128,6 +165,11 @@ impl<'a> Workshop<'a> {
     fn file(&self, stem: &str, ending: &str) -> PathBuf {
         self.output.join(format!("{stem}.{ending}"))
     }
+}
+
+/// What the files of a step are called.
+fn stem(id: &str, step: &Step) -> String {
+    format!("{id}-{}", step.name)
 }
 
 /// Without its folder.

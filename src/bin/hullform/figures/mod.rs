@@ -5,6 +5,7 @@ mod figure;
 mod list;
 mod make;
 mod page;
+mod panels;
 mod run;
 
 use std::io;

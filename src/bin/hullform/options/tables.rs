@@ -57,7 +57,7 @@ impl From<Caps> for EndCaps {
 }
 
 impl Tables {
-    /// What a method prepares with for some levels, of which each has the isolation that it needs, unless that is given or the method does not isolate.
+    /// What a method prepares with for some levels, of which each has the isolation that it needs, unless that is given, the method does not isolate, or a frame decides how deep.
     ///
     /// # Errors
     /// As [`Tables::options`] of `all`.
@@ -70,7 +70,7 @@ impl Tables {
         let mut groups: Vec<(MethodOptions, Vec<f32>)> = Vec::new();
         let greatest = levels.iter().copied().fold(1.0, f32::max);
         for &level in levels {
-            let is_own = method.isolates || self.macro_faces.is_asked();
+            let is_own = method.isolates && !method.dynamic || self.macro_faces.is_asked();
             let own = if is_own { level } else { greatest };
             let options = self.options(all, own)?;
             match groups.iter_mut().find(|(known, _)| *known == options) {

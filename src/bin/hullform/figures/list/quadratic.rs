@@ -10,7 +10,7 @@ pub const FIGURES: &[Figure] = &[
         steps(
             &[step(
                 "methods",
-                "compare any:monsterfrog/pole-18 --scheme loop --methods flat,qas,bft --level ~8~4",
+                "compare any:monsterfrog/pole-18 --scheme loop --methods flat,qas,bft --level ~8~2",
                 Writes::Both,
             )],
             &[check(
@@ -66,7 +66,7 @@ pub const FIGURES: &[Figure] = &[
         steps(
             &[step(
                 "methods",
-                "compare any:monsterfrog/pole-18 --scheme loop --methods flat,pn,qas --level ~8~4",
+                "compare any:monsterfrog/pole-18 --scheme loop --methods flat,pn,qas --level ~8~2",
                 Writes::Both,
             )],
             &[check(

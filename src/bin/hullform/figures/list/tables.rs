@@ -73,7 +73,7 @@ pub const FIGURES: &[Figure] = &[
         steps(
             &[step(
                 "methods",
-                "compare any:bigguy/pole-18 --scheme loop --methods flat,phong,pn,qas,bft --level ~8~4",
+                "compare any:bigguy/pole-18 --scheme loop --methods flat,phong,pn,qas,bft --level ~8~2",
                 Writes::Both,
             )],
             &[

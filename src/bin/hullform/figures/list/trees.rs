@@ -8,21 +8,6 @@ const PLANS: [Step; 3] = [
     step("armorguy", "plan model:armorguy", Writes::Facts),
 ];
 
-/// The share of a frame that goes into control points: what a frame that finds them in the cache does without.
-fn stencil_share(results: &Results, level: f64) -> Option<f64> {
-    let [ring, cache] = ["ring", "cache"].map(|residence| {
-        let row = results.row("bench", "quadtree", Some(level), Some(residence))?;
-        results.milliseconds("bench", row)
-    });
-    Some(1.0 - cache? / ring?)
-}
-
-/// How many frames of the second method go into one of the first.
-fn times(results: &Results, step: &str, [method, of]: [&str; 2], level: f64) -> Option<f64> {
-    let [own, other] = [method, of].map(|method| results.times_flat(step, method, Some(level)));
-    Some(own? / other?)
-}
-
 /// Nodes and stencils of all plans.
 fn size(results: &Results, step: &str) -> Option<f64> {
     let nodes = results.0.get(step)?.get("nodes")?.as_object()?;
@@ -50,23 +35,23 @@ pub const FIGURES: &[Figure] = &[
     ),
     figure(
         "2016.figure.3",
-        "The tessellation pattern of one primitive a face",
+        "Tessellation patterns side by side: one primitive a face, feature-adaptive subdivision, uniform refinement",
         steps(
             &[
                 step(
-                    "pattern",
-                    "render box:2x2x2 --wireframe --level 8",
-                    Writes::Picture,
+                    "quadtree",
+                    "render box:2x2x2 --wireframe --level 6 --shading patch --size 560x560 --camera=45,35,1.5",
+                    Writes::Panel,
                 ),
                 step(
-                    "levels",
-                    "render box:2x2x2 --method fas --wireframe --level 8",
-                    Writes::Picture,
+                    "fas",
+                    "render box:2x2x2 --method fas --wireframe --level 6 --shading patch --size 560x560 --camera=45,35,1.5",
+                    Writes::Panel,
                 ),
                 step(
-                    "uniform",
-                    "render box:2x2x2 --method refine --wireframe --level 8",
-                    Writes::Picture,
+                    "refine",
+                    "render box:2x2x2 --method refine --wireframe --level 6 --shading patch --size 560x560 --camera=45,35,1.5",
+                    Writes::Panel,
                 ),
             ],
             &[],
@@ -125,142 +110,22 @@ pub const FIGURES: &[Figure] = &[
     figure(
         "2016.figure.11",
         "The time of a frame over tessellation factors, against Gregory patches",
-        steps(
-            &[
-                step(
-                    "bigguy",
-                    "bench model:bigguy --methods quadtree,gregory,fas,refine --levels ~1,2,3,4,5,6,7,8~1,8 --frames ~9~3",
-                    Writes::Plot,
-                ),
-                slow(
-                    "monsterfrog",
-                    "bench model:monsterfrog --methods quadtree,gregory,fas --levels 1,2,3,4,5,6,7,8 --frames 9",
-                    Writes::Plot,
-                ),
-                slow(
-                    "armorguy",
-                    "bench model:armorguy --methods quadtree,fas --levels 1,2,4,8 --frames 4",
-                    Writes::Plot,
-                ),
-            ],
-            &[
-                check(
-                    "Big Guy, level 8: frames of quadtree in one of fas",
-                    "1.2 to 3.4, of all models",
-                    |r| times(r, "bigguy", ["fas", "quadtree"], 8.0),
-                    Agrees::AtLeast(1.2),
-                ),
-                check(
-                    "Monster Frog, level 8: frames of quadtree in one of fas",
-                    "1.2 to 3.4, of all models",
-                    |r| times(r, "monsterfrog", ["fas", "quadtree"], 8.0),
-                    Agrees::AtLeast(1.2),
-                ),
-                check(
-                    "Big Guy, level 8: frames of quadtree in one of refine",
-                    "not printed",
-                    |r| times(r, "bigguy", ["refine", "quadtree"], 8.0),
-                    Agrees::Shown,
-                ),
-                check(
-                    "Armor Guy, level 8: frames of quadtree in one of fas",
-                    "1.2 to 3.4, of all models",
-                    |r| times(r, "armorguy", ["fas", "quadtree"], 8.0),
-                    Agrees::AtLeast(1.2),
-                ),
-                check(
-                    "Big Guy, level 8: frames of gregory in one of quadtree",
-                    "on par with Gregory patches",
-                    |r| times(r, "bigguy", ["quadtree", "gregory"], 8.0),
-                    Agrees::AtMost(1.25),
-                ),
-                check(
-                    "Monster Frog, level 8: frames of gregory in one of quadtree",
-                    "on par with Gregory patches",
-                    |r| times(r, "monsterfrog", ["quadtree", "gregory"], 8.0),
-                    Agrees::AtMost(1.25),
-                ),
-            ],
-            "DFAS and OpenSubdiv are not in the library, and Stirling is not public",
-        ),
+        peers::FACTORS,
     ),
     figure(
         "2016.figure.13",
         "A grid of cubes, which has irregular faces alone",
-        steps(
-            &[step(
-                "cubes",
-                "bench ~builtin:cubes-12x12x10~builtin:cubes-4x4x3 --methods quadtree,gregory,fas --levels ~1,2,4,8~8 --frames ~4~2",
-                Writes::Plot,
-            )],
-            &[
-                check(
-                    "level 8: frames of quadtree in one of fas",
-                    "more than 3",
-                    |r| times(r, "cubes", ["fas", "quadtree"], 8.0),
-                    Agrees::AtLeast(3.0),
-                ),
-                check(
-                    "level 8: frames of gregory in one of quadtree",
-                    "not printed",
-                    |r| times(r, "cubes", ["quadtree", "gregory"], 8.0),
-                    Agrees::Shown,
-                ),
-            ],
-            "",
-        ),
+        peers::CUBES,
     ),
     figure(
         "2016.figure.14",
         "The share of a frame that goes into stencils, Armor Guy",
-        steps(
-            &[slow(
-                "bench",
-                "bench model:armorguy --methods quadtree --residence ring,cache --static --levels 1,2,4,8 --frames 4",
-                Writes::Plot,
-            )],
-            &[
-                check(
-                    "level 1",
-                    "at most 0.54",
-                    |r| stencil_share(r, 1.0),
-                    Agrees::AtMost(0.54),
-                ),
-                check(
-                    "level 8",
-                    "at least 0.30, and falling with the level",
-                    |r| stencil_share(r, 8.0),
-                    Agrees::AtMost(0.54),
-                ),
-                check(
-                    "level 8 over level 1",
-                    "below 1",
-                    |r| Some(stencil_share(r, 8.0)? / stencil_share(r, 1.0)?),
-                    Agrees::AtMost(1.0),
-                ),
-            ],
-            "",
-        ),
+        peers::SHARE,
     ),
     figure(
         "2016.figure.15",
         "Levels by distance, Big Guy",
-        steps(
-            &[
-                step(
-                    "near",
-                    "render any:bigguy/hull --adaptive distance --shading level --camera=40,22,1",
-                    Writes::Picture,
-                ),
-                step(
-                    "far",
-                    "render any:bigguy/hull --adaptive distance --shading level --camera=40,22,0.25",
-                    Writes::Picture,
-                ),
-            ],
-            &[],
-            "DFAS, which it is compared with, is not in the library",
-        ),
+        peers::DISTANCE,
     ),
     figure(
         "2016.figure.16",

@@ -22,7 +22,7 @@ pub struct Part {
 
 /// The parts of every face that is no hole, in ptex order.
 pub fn parts(model: &Model) -> Vec<Part> {
-    let mut parts = Vec::new();
+    let mut parts = Vec::with_capacity(model.mesh().ptex_count());
     let mut ptex = 0;
     for face in 0..model.topology().face_count() as u32 {
         let all = parts_at(model, face, ptex);

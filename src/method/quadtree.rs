@@ -10,6 +10,7 @@ mod corner;
 mod hubs;
 mod in_ring;
 mod irregular;
+mod log;
 mod macro_faces;
 mod places;
 mod plain;
@@ -228,7 +229,7 @@ fn planned(
     Ok((prepared, planner))
 }
 
-/// The passes without patches, in the order of [`planner::PASSES`]. Patches with long rings have shaders of their own, which need not pay for others.
+/// The passes without patches, in the order of [`log::PASSES`]. Patches with long rings have shaders of their own, which need not pay for others.
 fn passes(options: PlanOptions) -> Vec<Pass> {
     let mut regular = pass("quadtree_regular", 16, twin::regular, options);
     // Masks of Catmull-Clark have no negative weights: a limit is within the hull of what it is a sum of.

@@ -18,6 +18,7 @@ use crate::method::quadtree::agreement::{agree, agreed_edges};
 use crate::method::quadtree::border::Given;
 use crate::method::quadtree::bounded;
 use crate::method::quadtree::irregular::{Irregulars, NONE, Record, order, push_ring};
+use crate::method::quadtree::log::{Log, PASSES, Place};
 use crate::method::quadtree::places;
 use crate::method::quadtree::planned::Planned;
 use crate::method::quadtree::run::Run;
@@ -25,8 +26,6 @@ use crate::method::quadtree::surroundings::{Found, Surroundings, found as found_
 use crate::method::{Pass, PassChange};
 use crate::plan::{Database, PlanOptions, SmoothQuads};
 
-/// The passes, in their order: regular patches, patches with plans and short rings, patches with plans and long rings.
-pub const PASSES: usize = 3;
 /// The pass of regular patches.
 const REGULAR: usize = 0;
 /// That of patches with short rings: each invocation of the control shader can have a vertex of theirs.
@@ -36,13 +35,6 @@ const LONG: usize = 2;
 const AT_A_TIME: usize = 1 << 11;
 /// So many are few.
 const FEW: usize = 1 << 6;
-
-/// Where the patch of a ptex face is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Place {
-    pass: usize,
-    slot: u32,
-}
 
 /// See the top of this file.
 pub struct Planner {
@@ -75,55 +67,6 @@ pub struct Wanted<'a> {
     pub parts: &'a [Part],
     /// The ptex faces that are not drawn any more.
     pub gone: &'a [u32],
-}
-
-/// What can be taken back, and what is let go at the end.
-#[derive(Default)]
-struct Log {
-    /// What was in slots before, in the order in which they were changed.
-    before: Vec<Before>,
-    /// Numbers of control vertices: pass, start, count.
-    freed: Vec<(usize, u32, u32)>,
-    /// By pass, where numbers of control vertices were written below the end of the list.
-    written: [Vec<std::ops::Range<u32>>; PASSES],
-}
-
-/// What was in a slot: its patch, texture coordinates and sides.
-struct Before {
-    place: Place,
-    patch: abi::Patch,
-    texture: [[f32; 2]; 4],
-    sides: [u32; 4],
-}
-
-impl Log {
-    /// Takes down what is in a slot.
-    fn remember(&mut self, pass: &Pass, place: Place) {
-        let slot = place.slot as usize;
-        self.before.push(Before {
-            place,
-            patch: pass.patches[slot],
-            texture: pass.texture[slot],
-            sides: pass.sides.get(slot).copied().unwrap_or_default(),
-        });
-    }
-
-    /// Puts everything back, in passes that had so many slots.
-    fn take_back(self, passes: &mut [Pass], slots: &[usize]) {
-        for before in self.before.into_iter().rev() {
-            let (pass, slot) = (&mut passes[before.place.pass], before.place.slot as usize);
-            pass.patches[slot] = before.patch;
-            pass.texture[slot] = before.texture;
-            if let Some(sides) = pass.sides.get_mut(slot) {
-                *sides = before.sides;
-            }
-        }
-        for (pass, &slots) in passes.iter_mut().zip(slots) {
-            pass.patches.truncate(slots);
-            pass.texture.truncate(slots);
-            pass.sides.truncate(slots);
-        }
-    }
 }
 
 /// A patch that nothing is drawn of.
@@ -206,8 +149,8 @@ impl Planner {
             let own = log
                 .before
                 .iter()
-                .filter(|before| before.place.pass == number);
-            change.patches(own.map(|before| before.place.slot).collect());
+                .filter(|before| before.place.pass() == number);
+            change.patches(own.map(|before| before.place.slot()).collect());
             let appended = ends[number]..passes[number].controls.len();
             change.controls(&log.written[number], appended);
         }
@@ -379,10 +322,7 @@ impl Planner {
         let found = borders.find(given, &slots, store, self.options, database)?;
         pass.controls.extend_from_slice(&found.places);
         for (slot, border) in slots.into_iter().zip(found.numbers) {
-            let place = Place {
-                pass: pass_number,
-                slot,
-            };
+            let place = Place::new(pass_number, slot);
             if self.spares && pass.patches[slot as usize].plan != border {
                 log.remember(pass, place);
             }
@@ -394,9 +334,9 @@ impl Planner {
     /// The slot of a ptex face in a pass: its own, or one that is vacant.
     fn slot(&mut self, passes: &mut [Pass], number: usize, ptex: u32, log: &mut Log) -> u32 {
         match self.places[ptex as usize] {
-            Some(place) if place.pass == number => {
+            Some(place) if place.pass() == number => {
                 self.let_go(passes, place, log);
-                return place.slot;
+                return place.slot();
             }
             Some(_) => self.leave(passes, ptex, log),
             None => {}
@@ -406,7 +346,7 @@ impl Planner {
         }
         let slot = self.vacant[number].pop();
         let slot = slot.expect("a pass was just made longer");
-        let place = Place { pass: number, slot };
+        let place = Place::new(number, slot);
         self.places[ptex as usize] = Some(place);
         if self.spares {
             log.remember(&passes[number], place);
@@ -420,33 +360,33 @@ impl Planner {
             return;
         };
         self.let_go(passes, place, log);
-        let (pass, slot) = (&mut passes[place.pass], place.slot as usize);
+        let (pass, slot) = (&mut passes[place.pass()], place.slot() as usize);
         pass.patches[slot] = VACANT;
         // Sides keep up with edges only as long as somebody has them.
         if let Some(sides) = pass.sides.get_mut(slot) {
             *sides = [0; 4];
         }
-        self.vacant[place.pass].push(place.slot);
+        self.vacant[place.pass()].push(place.slot());
     }
 
     /// Takes down what a patch was, whose control vertices are somewhere else afterwards.
     fn let_go(&mut self, passes: &[Pass], place: Place, log: &mut Log) {
-        let slot = place.slot as usize;
-        let patch = passes[place.pass].patches[slot];
-        let count = match place.pass {
+        let slot = place.slot() as usize;
+        let patch = passes[place.pass()].patches[slot];
+        let count = match place.pass() {
             REGULAR => 16,
             pass => {
                 let record = &self.planned[pass - SHORT].records[slot];
                 let face = record.part.face as usize;
-                if self.of_faces[face] == place.slot && pass == SHORT {
+                if self.of_faces[face] == place.slot() && pass == SHORT {
                     self.of_faces[face] = NONE;
                 }
                 let size = record.ring_size as usize;
                 (size + places::words(size, size)) as u32
             }
         };
-        log.freed.push((place.pass, patch.controls, count));
-        log.remember(&passes[place.pass], place);
+        log.freed.push((place.pass(), patch.controls, count));
+        log.remember(&passes[place.pass()], place);
     }
 
     /// Where numbers of control vertices are kept: where there were as many that nobody uses, or at the end.

@@ -3,9 +3,11 @@
 //! draws the patches of these depths alone, and only the points of these are computed.
 //!
 //! All depths are prepared once a topology: the B-splines of each, and end caps of each for frames that go no deeper there. Which are drawn is decided with
-//! the draw list, on the host; where the device decides about levels all irregularities have the depth of the cut. The control mesh is refined once around everything irregular; what is irregular then and hangs together by edges is one irregularity (an
-//! extraordinary vertex, a crease with all that meets it), so that all faces around a vertex end at one depth, and beside an end cap lie B-splines of
-//! its own depth, which are the same curve on their edge: the corners of caps, and no more of them where levels are whole, are vertices. Beside an infinitely sharp edge a face is
+//! the draw list, on the host; where the device decides about levels all irregularities have the depth of the cut.
+//!
+//! The control mesh is refined once around everything irregular. What is irregular then and hangs together by edges is one irregularity (an extraordinary
+//! vertex, a crease with all that meets it), so that all faces around a vertex end at one depth, and beside an end cap lie B-splines of its own depth, which
+//! are the same curve on their edge: the corners of caps, and no more of them where levels are whole, are vertices. Beside an infinitely sharp edge a face is
 //! refined along with the one beyond, though it is a B-spline without. So there are no gaps, though bits may differ.
 //!
 //! Patches, caps and shaders' arithmetic are those of `method/fas.rs`. The paper fills its patch buffer on the device; a draw list has the same patches.

@@ -1,5 +1,7 @@
 //! Draw lists, without a device: whatever the mesh, cut and options, a list draws each patch once and stays within its bounds.
 
+use std::ops::Range;
+
 use hullform::frame::{
     Backend, Cut, Draw, DrawList, Residence, Slots, SurfaceOptions, TessellatedPoint,
 };
@@ -29,9 +31,25 @@ fn tags(prepared: &Prepared) -> DepthTags {
     DepthTags::new((0..prepared.vertex_count()).map(|vertex| (vertex % 4) as f32))
 }
 
+/// The patches that a list draws of a pass: all, or, where a frame decides how deep is refined, those from the first that has vertices to the last.
+fn drawn(list: &DrawList, prepared: &Prepared, pass: usize) -> Range<u32> {
+    let all = 0..prepared.passes[pass].patches.len() as u32;
+    if !prepared.is_dynamic() {
+        return all;
+    }
+    let has_vertices = |&patch: &u32| list.vertices(prepared, pass, patch) > 0;
+    let first = all.clone().find(has_vertices);
+    let last = all.rev().find(has_vertices);
+    first
+        .zip(last)
+        .map_or(0..0, |(first, last)| first..last + 1)
+}
+
 /// Holds a list to its promises.
 fn hold(list: &DrawList, prepared: &Prepared, most: Option<u32>, what: &str) {
-    let mut next = vec![0; prepared.passes.len()];
+    let drawn = (0..prepared.passes.len()).map(|pass| drawn(list, prepared, pass));
+    let drawn: Vec<Range<u32>> = drawn.collect();
+    let mut next: Vec<u32> = drawn.iter().map(|patches| patches.start).collect();
     let mut ring_batches = 0;
     for batch in list.batches() {
         let (pass, patches) = (batch.pass(), batch.patches());
@@ -58,9 +76,8 @@ fn hold(list: &DrawList, prepared: &Prepared, most: Option<u32>, what: &str) {
             ring_batches += 1;
         }
     }
-    let passes = prepared.passes.iter();
-    let all: Vec<u32> = passes.map(|pass| pass.patches.len() as u32).collect();
-    assert_eq!(next, all, "{what}: all patches");
+    let ends: Vec<u32> = drawn.iter().map(|patches| patches.end).collect();
+    assert_eq!(next, ends, "{what}: all patches");
     let counters = DrawList::ring_counters(prepared, list.options(), most);
     let counters = counters.expect("a list was made with these options");
     let used = u64::from(ring_batches) * u64::from(list.options().rounds);

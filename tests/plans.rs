@@ -8,6 +8,7 @@ use common::meshes::{cases, manifold, scatter, wild};
 use common::surfaces::Surfaces;
 use glam::{DVec3, Vec2};
 use hullform::abi;
+use hullform::frame::Cut;
 use hullform::mesh::topology::Topology;
 use hullform::mesh::{ControlMesh, Model, builtin, read_obj};
 use hullform::method::{Cell, METHODS, Method, method};
@@ -17,7 +18,7 @@ use hullform::plan::{
     VertexKind, VertexPlan, walk,
 };
 use hullform::subdivision::{Blend, LimitSurface};
-use hullform::tessellation::{Domain, Levels, required_level};
+use hullform::tessellation::{Domain, Levels, Spacing, required_level};
 use proptest::prelude::*;
 
 fn of_quad(topology: &Topology, face: u32) -> Ring {
@@ -300,17 +301,23 @@ proptest! {
         let expected: Vec<u32> = expected.collect();
         for method in able(&model) {
             let prepared = method.prepare(&model, PlanOptions::default()).expect("sound options");
-            // The share of each ptex face that is drawn.
-            let mut found = std::collections::BTreeMap::new();
-            for patch in prepared.passes.iter().flat_map(|pass| &pass.patches) {
-                *found.entry(patch.ptex).or_default() += match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
-                    0 => 1.0,
-                    abi::CHILD_PIECE => 0.25f64.powi((patch.plan >> abi::PIECE_DEPTH_SHIFT) as i32),
-                    _ => 0.25,
-                };
+            for level in [1.0, 6.0, 64.0] {
+                let cut = Cut { level, spacing: Spacing::Equal };
+                // The share of each ptex face that is drawn.
+                let mut found = std::collections::BTreeMap::new();
+                for pass in &prepared.passes {
+                    let drawn = (0..pass.patches.len()).filter(|&patch| cut.levels(pass, patch).is_some());
+                    for patch in drawn.map(|patch| &pass.patches[patch]) {
+                        *found.entry(patch.ptex).or_default() += match patch.flags >> abi::PATCH_CHILD_SHIFT & 15 {
+                            0 => 1.0,
+                            abi::CHILD_PIECE => 0.25f64.powi((patch.plan >> abi::PIECE_DEPTH_SHIFT) as i32),
+                            _ => 0.25,
+                        };
+                    }
+                }
+                let whole = expected.iter().map(|&ptex| (ptex, 1.0)).collect();
+                prop_assert_eq!(&found, &whole, "{} {}", method.name, level);
             }
-            let whole = expected.iter().map(|&ptex| (ptex, 1.0)).collect();
-            prop_assert_eq!(&found, &whole, "{}", method.name);
         }
     }
 }

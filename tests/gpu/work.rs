@@ -3,14 +3,23 @@
 use hullform::abi;
 use hullform::gpu::{Cut, Fill, Shading};
 use hullform::mesh::{Model, builtin};
-use hullform::method::{METHODS, Prepared};
+use hullform::method::{METHODS, Pass, Prepared};
 
 use crate::common::gpu::{Gpu, Loaded, SPACINGS, capturing, cut, over_patches, prepare, vertices};
 use crate::shapes;
 
 /// One patch a face that the scheme takes whole, or four where the method refines first, and one a corner of other faces; none in holes. Where faces are in
-/// pieces, all that there are.
-fn patches(model: &Model, prepared: &Prepared) -> u64 {
+/// pieces, all that there are; where a frame decides how deep is refined, of each pass those from the first that is drawn to the last.
+fn patches(model: &Model, prepared: &Prepared, cut: Cut) -> u64 {
+    if prepared.is_dynamic() {
+        let of_pass = |pass: &Pass| {
+            let all = 0..pass.patches.len();
+            let mut drawn = all.filter(|&patch| cut.levels(pass, patch).is_some());
+            let first = drawn.next();
+            first.map_or(0, |first| drawn.last().unwrap_or(first) - first + 1)
+        };
+        return prepared.passes.iter().map(of_pass).sum::<usize>() as u64;
+    }
     let mut all = prepared.passes.iter().flat_map(|pass| &pass.patches);
     if all
         .clone()
@@ -46,7 +55,7 @@ fn assert_predicted(name: &str, model: &Model, loaded: &mut Loaded<'_>, cut: Cut
         levels.map_or(0, |levels| levels.triangles(cut.spacing))
     });
     let predicted = [
-        patches(model, prepared),
+        patches(model, prepared, cut),
         u64::from(vertices(prepared, cut)),
         u64::from(triangles),
     ];

@@ -151,8 +151,8 @@ fn refuses_and_keeps_the_picture(session: &Session) {
         now.part(part) == before.part(part),
         "the last picture stays"
     );
-    // Of the methods between all but two refuse creases.
-    (0..7).for_each(|_| session.press('m'));
+    // Of the methods between all but three refuse creases.
+    (0..8).for_each(|_| session.press('m'));
     session.until("curved faces", |state| {
         state["models"][0]["methods"][0] == "pn"
     });

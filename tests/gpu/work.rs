@@ -16,7 +16,7 @@ fn patches(model: &Model, prepared: &Prepared, cut: Cut) -> u64 {
             let all = 0..pass.patches.len();
             let mut drawn = all.filter(|&patch| cut.levels(pass, patch).is_some());
             let first = drawn.next();
-            first.map_or(0, |first| drawn.last().unwrap_or(first) - first + 1)
+            first.map_or(0, |first| drawn.next_back().unwrap_or(first) - first + 1)
         };
         return prepared.passes.iter().map(of_pass).sum::<usize>() as u64;
     }

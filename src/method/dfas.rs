@@ -18,34 +18,21 @@ mod levels;
 use glam::Vec2;
 
 use crate::error::Result;
-use crate::mesh::{Model, Scheme};
+use crate::mesh::Model;
 use crate::method::fas;
 use crate::method::surface::{Controls, SurfacePoint};
-use crate::method::{Contract, Method, MethodOptions, Pass, Prepared, Reproduces};
+use crate::method::{Method, MethodOptions, Pass, Prepared};
 use crate::plan::Database;
-use crate::tessellation::Domain;
 use levels::Growth;
 
-/// The row of the table.
+/// The row of the table: what `fas` is, but for when its depth is decided.
 pub const METHOD: Method = Method {
     name: "dfas",
     summary: "feature-adaptive subdivision whose depth each irregularity has for itself in each frame",
     paper: "Schäfer, Raab, Keinert, Meyer, Stamminger, Nießner 2015",
-    schemes: &[Scheme::CatmullClark],
-    domains: &[Domain::Quads],
-    contract: Contract {
-        reproduces: Reproduces::LimitBesideCaps(1e-6),
-        normals: Some(0.1),
-        interpolates: false,
-        watertight: false,
-    },
-    uses_tables: false,
-    isolates: true,
-    aggregates: false,
     dynamic: true,
-    covers: fas::check,
     prepare,
-    edits: None,
+    ..fas::METHOD
 };
 
 fn prepare(model: &Model, options: MethodOptions, _database: &Database) -> Result<Prepared> {

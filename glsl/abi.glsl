@@ -270,6 +270,10 @@ const uint HULL_SPLINE = 2147483648u;
 const uint HULL_DYNAMIC = 1073741824u;
 // There: it is drawn at that depth alone.
 const uint HULL_SHALLOW = 536870912u;
+// How often is refined around what is irregular at least, by methods that go as deep as a frame needs.
+const uint LEAST_DEPTH = 1u;
+// And at most.
+const uint GREATEST_DEPTH = 6u;
 // In a term of a limit: the number behind this flag is that of a list of vertices, of whose sum the weight is; on the host, of a face.
 const uint LIMIT_FACE = 2147483648u;
 // Invocations of a workgroup of the shader that decides.

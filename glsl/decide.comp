@@ -98,8 +98,8 @@ uint culled_by(Patch record, PatchSides sides, bool all_outside, uint seen, uint
 
 // How deep is refined around all irregularities, of methods that go as deep as a frame needs. Twin of `depth_at` in `method/depths.rs`.
 uint depth_of_frame() {
-    uint depth = 1u;
-    while (depth < 6u && float(1u << depth) < decision.level) ++depth;
+    uint depth = LEAST_DEPTH;
+    while (depth < GREATEST_DEPTH && float(1u << depth) < decision.level) ++depth;
     return depth;
 }
 

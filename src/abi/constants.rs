@@ -277,6 +277,10 @@ constants! {
     HULL_DYNAMIC = 0x4000_0000;
     /// There: it is drawn at that depth alone.
     HULL_SHALLOW = 0x2000_0000;
+    /// How often is refined around what is irregular at least, by methods that go as deep as a frame needs.
+    LEAST_DEPTH = 1;
+    /// And at most.
+    GREATEST_DEPTH = 6;
     /// In a term of a limit: the number behind this flag is that of a list of vertices, of whose sum the weight is; on the host, of a face.
     LIMIT_FACE = 0x8000_0000;
     /// Invocations of a workgroup of the shader that decides.

@@ -6,7 +6,7 @@ use crate::method::stage::{ALWAYS, NOWHERE};
 use crate::method::{IsolationOptions, Pass, Prepared};
 
 /// The least depth of an irregularity: its faces are refined once, so that it is by itself.
-const LEAST: u32 = 1;
+const LEAST: u32 = abi::LEAST_DEPTH;
 
 impl Pass {
     /// Whether a frame decides which of its patches are drawn.

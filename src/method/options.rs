@@ -1,5 +1,6 @@
 //! How methods prepare: each takes the options that concern it.
 
+use crate::abi;
 use crate::error::{Error, Result};
 use crate::method::macro_faces::MacroFaces;
 use crate::plan::PlanOptions;
@@ -91,7 +92,7 @@ impl Default for IsolationOptions {
 
 impl IsolationOptions {
     /// The greatest `level`.
-    pub const GREATEST_LEVEL: u32 = 6;
+    pub const GREATEST_LEVEL: u32 = abi::GREATEST_DEPTH;
 
     /// The refinements that a tess level needs: its binary logarithm. With fewer, vertices fall inside of end caps; with more, patches are cut finer than is asked for.
     pub fn level_for(tess_level: f32) -> u32 {

@@ -81,19 +81,19 @@ pub fn agreed_edges(
 /// Takes down which edges of some faces are agreed upon, and adds the patches beyond those of which that has changed.
 pub fn agree(
     topology: &Topology,
-    faces: &[u32],
+    faces: Option<&[u32]>,
     now: &[u32],
     agreed: &mut [bool],
     patches: &Irregulars<'_>,
     slots: &mut Vec<u32>,
 ) {
-    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
-    // Where all patches are here anyway, none is to be added.
-    if slots.len() == patches.records.len() {
-        edges().for_each(|&edge| agreed[edge as usize] = false);
+    let Some(faces) = faces else {
+        // All patches are here, so none is to be added.
+        agreed.fill(false);
         now.iter().for_each(|&edge| agreed[edge as usize] = true);
         return;
-    }
+    };
+    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
     let before: Vec<bool> = edges().map(|&edge| agreed[edge as usize]).collect();
     edges().for_each(|&edge| agreed[edge as usize] = false);
     now.iter().for_each(|&edge| agreed[edge as usize] = true);

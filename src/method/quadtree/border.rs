@@ -137,14 +137,13 @@ impl Borders {
             let patch = patches.get(slot);
             let looks = patch.record.is_smooth.then(|| builder.looks(patch));
             let known = looks.and_then(|looks| smooth_borders.get(&looks));
-            let number = match known {
-                Some(&known) => known,
-                None => {
-                    let border = builder.border(patch)?;
-                    let Borders { known, records, .. } = &mut *builder.borders;
-                    numbered(known, records, border)
-                }
-            };
+            if let Some(&known) = known {
+                numbers.push(known);
+                continue;
+            }
+            let border = builder.border(patch)?;
+            let Borders { known, records, .. } = &mut *builder.borders;
+            let number = numbered(known, records, border);
             if let Some(looks) = looks {
                 smooth_borders.insert(looks, number);
             }
@@ -243,7 +242,7 @@ impl Builder<'_> {
             };
             let point = self.vertices.get(topology, Point::Vertex(from));
             looks[5 + i as usize] = match point {
-                None => is_turned_corner(topology, self.smooth, face, corner).into(),
+                None => is_turned_corner(self.smooth, 4 * face + corner).into(),
                 Some(known) => 2 + (known.plan << 5 | self.smooth.place_around(face, corner)),
             };
         }
@@ -338,7 +337,7 @@ impl Builder<'_> {
                 }
                 None => {
                     let face_corner = (turn + corner) % 4;
-                    let turned = is_turned_corner(topology, smooth, part.face, face_corner);
+                    let turned = is_turned_corner(smooth, 4 * part.face + face_corner);
                     let quarters = (corner + u32::from(turned)) % 4;
                     uses[number].flags = quarters << abi::USE_TURN_SHIFT;
                     let vertices = vertex_rows(smooth, part.face, face_corner, turned);

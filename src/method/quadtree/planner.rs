@@ -3,8 +3,6 @@
 //! A patch keeps its slot, which is its number in its pass, as long as its face is drawn with the same shaders. What leaves a slot leaves it vacant, for whoever
 //! comes next. Plans and borders only ever grow ([`Planned`]); numbers of control vertices that nobody uses any more are taken again.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -40,8 +38,6 @@ const FEW: usize = 1 << 6;
 pub struct Planner {
     options: PlanOptions,
     planned: [Planned; 2],
-    /// The mesh's topology where it has hubs, with these.
-    hubbed: Option<Arc<Topology>>,
     /// By face, see [`Irregulars::of_faces`].
     of_faces: Vec<u32>,
     /// By edge, see [`Given::agreed`].
@@ -60,11 +56,11 @@ pub struct Planner {
 }
 
 /// What is to be planned.
-pub struct Wanted<'a> {
-    /// The faces that may have changed; all of them at first.
-    pub faces: &'a [u32],
+pub struct Wanted<'a, Parts: Iterator<Item = Part>> {
+    /// The faces that may have changed; None of all, at first.
+    pub faces: Option<&'a [u32]>,
     /// The parts of those that are drawn.
-    pub parts: &'a [Part],
+    pub parts: Parts,
     /// The ptex faces that are not drawn any more.
     pub gone: &'a [u32],
 }
@@ -80,10 +76,9 @@ const VACANT: abi::Patch = abi::Patch {
 
 impl Planner {
     /// One that keeps what edits need, or that gives it all to the passes in the end.
-    pub fn new(options: PlanOptions, keeps: bool, hubbed: Option<Topology>) -> Planner {
+    pub fn new(options: PlanOptions, keeps: bool) -> Planner {
         Planner {
             options,
-            hubbed: hubbed.map(Arc::new),
             planned: Default::default(),
             of_faces: Vec::new(),
             agreed: Vec::new(),
@@ -123,7 +118,8 @@ impl Planner {
         self.agreed = agreed;
     }
 
-    /// Plans faces. The passes are left as they were where that fails, and the planner is of no use then.
+    /// Plans faces, on the topology of what is smooth: the model's, perhaps with hubs. The passes are left as they were where that fails, and the planner is
+    /// of no use then.
     ///
     /// # Errors
     /// As [`Store::plans`](super::store::Store::plans) and [`Borders::find`](super::border::Borders::find).
@@ -131,13 +127,14 @@ impl Planner {
         &mut self,
         passes: &mut [Pass],
         model: &Model,
-        wanted: &Wanted<'_>,
+        smooth: &SmoothQuads<'_>,
+        wanted: Wanted<'_, impl Iterator<Item = Part>>,
         database: &Database,
     ) -> Result<Vec<PassChange>> {
         let mut log = Log::default();
         let ends: Vec<usize> = passes.iter().map(|pass| pass.controls.len()).collect();
         let slots: Vec<usize> = passes.iter().map(|pass| pass.patches.len()).collect();
-        if let Err(error) = self.try_plan(passes, model, wanted, database, &mut log) {
+        if let Err(error) = self.try_plan(passes, model, smooth, wanted, database, &mut log) {
             log.take_back(passes, &slots);
             return Err(error);
         }
@@ -161,13 +158,12 @@ impl Planner {
         &mut self,
         passes: &mut [Pass],
         model: &Model,
-        wanted: &Wanted<'_>,
+        smooth: &SmoothQuads<'_>,
+        wanted: Wanted<'_, impl Iterator<Item = Part>>,
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let hubbed = self.hubbed.clone();
-        let topology = hubbed.as_deref().unwrap_or(model.topology());
-        let smooth = SmoothQuads::new(topology);
+        let topology = smooth.topology();
         self.of_faces.resize(topology.face_count(), NONE);
         self.agreed.resize(topology.edge_count(), false);
         self.places.resize(model.mesh().ptex_count(), None);
@@ -175,35 +171,32 @@ impl Planner {
             self.leave(passes, ptex, log);
         }
         let mut runs: [Run; 2] = Default::default();
-        let mut all = Vec::with_capacity(AT_A_TIME.min(wanted.parts.len()));
-        // Some parts are few enough whatever is around them.
-        let crowded = wanted.parts.len() > FEW && bounded::is_crowded(topology);
+        let (mut parts, mut all) = (Vec::new(), Vec::new());
         let mut rest = wanted.parts;
-        while !rest.is_empty() {
-            let parts;
-            (parts, rest) = rest.split_at(match crowded {
-                true => bounded::some(topology, rest, AT_A_TIME),
-                false => AT_A_TIME.min(rest.len()),
-            });
-            let found = parts.par_iter();
-            let found = found.map(|&part| found_at(model, topology, &smooth, part));
+        // Some parts are few enough whatever is around them.
+        let mut crowded = None;
+        loop {
+            parts.extend(rest.by_ref().take(AT_A_TIME - parts.len()));
+            if parts.is_empty() {
+                break;
+            }
+            let crowded =
+                parts.len() > FEW && *crowded.get_or_insert_with(|| bounded::is_crowded(topology));
+            let count = match crowded {
+                true => bounded::some(topology, &parts),
+                false => parts.len(),
+            };
+            let found = parts[..count].par_iter();
+            let found = found.map(|&part| found_at(model, topology, smooth, part));
             found.collect_into_vec(&mut all);
-            for (&part, found) in parts.iter().zip(all.drain(..)) {
+            for (&part, found) in parts.iter().zip(&mut all) {
                 self.place(passes, topology, part, found, &mut runs, log);
             }
+            parts.drain(..count);
         }
         drop(all);
         for (number, run) in runs.into_iter().enumerate() {
-            self.plan_run(
-                number,
-                passes,
-                topology,
-                &smooth,
-                wanted.faces,
-                run,
-                database,
-                log,
-            )?;
+            self.plan_run(number, passes, smooth, wanted.faces, run, database, log)?;
         }
         Ok(())
     }
@@ -214,16 +207,16 @@ impl Planner {
         passes: &mut [Pass],
         topology: &Topology,
         part: Part,
-        found: Found,
+        found: &mut Found,
         runs: &mut [Run; 2],
         log: &mut Log,
     ) {
         let Found {
-            mut patch,
+            patch,
             texture,
             surroundings,
         } = found;
-        let number = match &surroundings {
+        let number = match surroundings {
             Surroundings::Regular(_) => REGULAR,
             Surroundings::Irregular(ring)
                 if ring.vertices.len() > abi::CONTROL_INVOCATIONS as usize =>
@@ -236,7 +229,7 @@ impl Planner {
         let (place, pass) = (slot as usize, &mut passes[number]);
         let mut controls = std::mem::take(&mut self.controls);
         controls.clear();
-        match &surroundings {
+        match surroundings {
             Surroundings::Regular(vertices) => controls.extend_from_slice(vertices),
             Surroundings::Smooth(_, ring) => {
                 let order = ring.order().iter().copied().map(u16::from);
@@ -250,10 +243,10 @@ impl Planner {
         patch.controls = self.keep(number, pass, &controls, log);
         self.controls = controls;
         if let Some(own) = pass.sides.get_mut(place) {
-            *own = sides(topology, part, &patch);
+            *own = sides(topology, part, patch);
         }
-        pass.patches[place] = patch;
-        pass.texture[place] = texture;
+        pass.patches[place] = *patch;
+        pass.texture[place] = *texture;
         if number == REGULAR {
             return;
         }
@@ -271,14 +264,13 @@ impl Planner {
         &mut self,
         number: usize,
         passes: &mut [Pass],
-        topology: &Topology,
         smooth: &SmoothQuads<'_>,
-        faces: &[u32],
+        faces: Option<&[u32]>,
         run: Run,
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let pass_number = SHORT + number;
+        let (pass_number, topology) = (SHORT + number, smooth.topology());
         let Run {
             mut slots,
             configurations,

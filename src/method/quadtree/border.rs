@@ -442,7 +442,7 @@ impl Builder<'_> {
     fn list(&mut self, ring: usize, places: &[u32]) -> u32 {
         let (all, first) = (&mut self.places, self.first_place);
         let mut words = List::new();
-        places::push(&mut words, ring, places.iter().copied());
+        places::push(&mut words, ring, places);
         *self
             .borders
             .lists

@@ -51,8 +51,6 @@ pub struct Planner {
     spares: bool,
     /// Whether plans and borders are kept for edits.
     keeps: bool,
-    /// Memory for the numbers of control vertices of one patch after another.
-    controls: Vec<u32>,
 }
 
 /// What is to be planned.
@@ -87,7 +85,6 @@ impl Planner {
             free: Default::default(),
             spares: false,
             keeps,
-            controls: Vec::new(),
         }
     }
 
@@ -227,21 +224,18 @@ impl Planner {
         };
         let slot = self.slot(passes, number, part.ptex, log);
         let (place, pass) = (slot as usize, &mut passes[number]);
-        let mut controls = std::mem::take(&mut self.controls);
-        controls.clear();
+        let first = pass.controls.len();
         match surroundings {
-            Surroundings::Regular(vertices) => controls.extend_from_slice(vertices),
+            Surroundings::Regular(vertices) => pass.controls.extend_from_slice(vertices),
             Surroundings::Smooth(_, ring) => {
-                let order = ring.order().iter().copied().map(u16::from);
-                push_ring(&mut controls, ring.vertices(), order);
+                push_ring(&mut pass.controls, ring.vertices(), ring.order());
             }
             Surroundings::Irregular(ring) => {
                 let vertices = &ring.vertices;
-                push_ring(&mut controls, vertices, order(vertices).into_iter());
+                push_ring(&mut pass.controls, vertices, &order(vertices));
             }
         }
-        patch.controls = self.keep(number, pass, &controls, log);
-        self.controls = controls;
+        patch.controls = self.keep(number, pass, first, log);
         if let Some(own) = pass.sides.get_mut(place) {
             *own = sides(topology, part, patch);
         }
@@ -381,15 +375,15 @@ impl Planner {
         log.remember(&passes[place.pass()], place);
     }
 
-    /// Where numbers of control vertices are kept: where there were as many that nobody uses, or at the end.
-    fn keep(&mut self, number: usize, pass: &mut Pass, controls: &[u32], log: &mut Log) -> u32 {
-        let count = controls.len() as u32;
+    /// Where numbers of control vertices are kept that were just appended: where there were as many that nobody uses, or there at the end.
+    fn keep(&mut self, number: usize, pass: &mut Pass, first: usize, log: &mut Log) -> u32 {
+        let count = (pass.controls.len() - first) as u32;
         let free = self.free[number].get_mut(&count).and_then(Vec::pop);
         let Some(start) = free else {
-            pass.controls.extend_from_slice(controls);
-            return pass.controls.len() as u32 - count;
+            return first as u32;
         };
-        pass.controls[start as usize..][..controls.len()].copy_from_slice(controls);
+        pass.controls.copy_within(first.., start as usize);
+        pass.controls.truncate(first);
         log.written[number].push(start..start + count);
         start
     }

@@ -16,12 +16,14 @@ use crate::error::{Error, Misuse, Result};
 use crate::mesh::topology::{Hub, Topology};
 use crate::method::quadtree::hubs::{self, hub_of};
 use crate::method::quadtree::in_ring::{InRing, List, Plain};
-use crate::method::quadtree::irregular::{Irregular, Irregulars, Record};
+use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, vertex_rows};
 use crate::method::quadtree::sides::{lines, points};
 use crate::method::quadtree::store::Store;
-use crate::method::quadtree::subjects::{Known, LONG, Line, LongRings, Point, Shared, Subject};
+use crate::method::quadtree::subjects::{
+    Known, LONG, Line, LongRings, Point, Shared, Subject, Subjects,
+};
 use crate::method::regular::is_turned_corner;
 use crate::plan::{Database, PlanOptions, Ring, Side, SmoothQuads};
 
@@ -94,29 +96,30 @@ impl Borders {
             let ends = topology.edge(edge).vertices;
             agreed[edge as usize] || ends.iter().all(|&vertex| is_plain(smooth, vertex))
         };
-        let records = || slots.iter().map(|&slot| &patches.records[slot as usize]);
-        // Of most faces around which all is smooth no edge needs a plan.
-        let is_all_settled = |record: &Record| {
-            let edges = topology.face_edges(record.part.face);
-            record.is_smooth && edges.iter().all(|&edge| is_settled(edge))
-        };
-        let unsettled = records().filter(|record| !is_all_settled(record));
-        let lines = unsettled.flat_map(|record| {
-            let lines = lines(topology, record.part, record.turn(topology));
-            lines.into_iter().map(|(line, ..)| line)
-        });
-        let lines = lines.filter(|&line| !matches!(line, Line::Edge(edge) if is_settled(edge)));
-        let lines = Shared::new(topology, smooth, lines, store, options, database)?;
-        let vertices = records().flat_map(|record| {
-            let points = points(topology, record.part, record.turn(topology));
-            points.into_iter().flatten()
-        });
         let needs_none = |point: Point| {
             matches!(point, Point::Vertex(vertex) if is_plain(smooth, vertex))
                 || hub_of(topology, point).is_some()
         };
-        let vertices = vertices.filter(|&point| !needs_none(point));
-        let vertices = Shared::new(topology, smooth, vertices, store, options, database)?;
+        let (mut all_lines, mut all_points) = (Subjects::new(), Subjects::new());
+        for record in slots.iter().map(|&slot| &patches.records[slot as usize]) {
+            let turn = record.turn(topology);
+            let edges = topology.face_edges(record.part.face);
+            // Of most faces around which all is smooth no edge needs a plan.
+            if !record.is_smooth || !edges.iter().all(|&edge| is_settled(edge)) {
+                for (line, ..) in lines(topology, record.part, turn) {
+                    if !matches!(line, Line::Edge(edge) if is_settled(edge)) {
+                        all_lines.add(topology, line);
+                    }
+                }
+            }
+            for point in points(topology, record.part, turn).into_iter().flatten() {
+                if !needs_none(point) {
+                    all_points.add(topology, point);
+                }
+            }
+        }
+        let lines = Shared::new(smooth, all_lines, store, options, database)?;
+        let vertices = Shared::new(smooth, all_points, store, options, database)?;
         let mut builder = Builder {
             topology,
             smooth,

@@ -97,7 +97,8 @@ impl Planner {
     pub fn spare(&mut self, passes: &mut [Pass]) {
         self.spares = true;
         for (number, pass) in passes.iter_mut().enumerate() {
-            self.extend(number, pass);
+            let first = self.extend(number, pass);
+            self.vacant[number].push(first);
         }
     }
 
@@ -327,11 +328,8 @@ impl Planner {
             Some(_) => self.leave(passes, ptex, log),
             None => {}
         }
-        if self.vacant[number].is_empty() {
-            self.extend(number, &mut passes[number]);
-        }
         let slot = self.vacant[number].pop();
-        let slot = slot.expect("a pass was just made longer");
+        let slot = slot.unwrap_or_else(|| self.extend(number, &mut passes[number]));
         let place = Place::new(number, slot);
         self.places[ptex as usize] = Some(place);
         if self.spares {
@@ -388,22 +386,26 @@ impl Planner {
         start
     }
 
-    /// Makes a pass longer by a slot, or, once there are slots to spare, by an eighth and some.
-    fn extend(&mut self, number: usize, pass: &mut Pass) {
+    /// Makes a pass longer by a slot, or, once there are slots to spare, by an eighth and some; returns the first, and leaves the others vacant.
+    fn extend(&mut self, number: usize, pass: &mut Pass) -> u32 {
         let first = pass.patches.len();
-        let count = if self.spares { first / 8 + 64 } else { 1 };
-        let end = first + count;
+        let records = number.checked_sub(SHORT);
+        let records = records.map(|number| &mut self.planned[number].records);
+        if !self.spares {
+            pass.patches.push(VACANT);
+            pass.texture.push(Default::default());
+            records.into_iter().for_each(|all| all.push(Record::VACANT));
+            return first as u32;
+        }
+        let end = first + first / 8 + 64;
         pass.patches.resize(end, VACANT);
         pass.texture.resize(end, Default::default());
-        if self.spares {
-            pass.sides.resize(end, [0; 4]);
-        }
-        if number > REGULAR {
-            let records = &mut self.planned[number - SHORT].records;
-            records.resize(end, Record::VACANT);
-        }
-        // The first is taken first.
-        self.vacant[number].extend((first as u32..end as u32).rev());
+        pass.sides.resize(end, [0; 4]);
+        let records = records.into_iter();
+        records.for_each(|all| all.resize(end, Record::VACANT));
+        // The first of the rest is taken first.
+        self.vacant[number].extend((first as u32 + 1..end as u32).rev());
+        first as u32
     }
 
     /// Brings the passes up to their plans and borders; tables only where there will be edits.

@@ -142,6 +142,8 @@ const uint NODE_TERMINAL = 4u;
 const uint NODE_EXTRAORDINARY = 5u;
 // Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
 const uint NODE_CURVE = 6u;
+// Node kind, of a face's edge: levels towards an extraordinary vertex at its end, a B-spline each.
+const uint NODE_CURVE_TERMINAL = 7u;
 // In a node's kind, the number of the stencil that its points are relative to, plus 1; 0 without one. Four bits.
 const uint NODE_BASE_SHIFT = 16u;
 // In a node's kind, the use of the corner whose vertex that stencil is relative to; 0 where it is relative to the ring's first. Four bits.
@@ -174,8 +176,8 @@ const uint PLACE_BITS = 5u;
 const uint LONG_PLACE_BITS = 16u;
 // In the first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
 const uint STENCIL_CORNER = 5u;
-// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
-const uint TERMINAL_POINTS = 64u;
+// Points in a level of a terminal node: sixteen for each of three children, which follow that at the extraordinary vertex in the order x + 2 y, all around.
+const uint TERMINAL_POINTS = 48u;
 // Patch flag, shifted by the edge's number: beyond it lie two patches, of an n-gon or a finer level: so it gets an even number of segments.
 const uint PATCH_EVEN_EDGE = 1u;
 // Patch flag: part of an n-gon, with half the tess level of a quad.

@@ -100,7 +100,8 @@ struct Leaf {
     uint kind;
 };
 
-// Levels around an extraordinary vertex: the level is floor(-log2) of the larger distance from it, read off the float's exponent.
+// Levels around an extraordinary vertex: the level is floor(-log2) of the larger distance from it, read off the float's exponent. Along an edge each is one
+// B-spline.
 Leaf terminal_leaf(Leaf leaf, uint levels) {
     uint corner = leaf.edge;
     vec2 uv = leaf.uv;
@@ -116,8 +117,10 @@ Leaf terminal_leaf(Leaf leaf, uint levels) {
     precise vec2 beyond = 1.0 - local;
     precise vec2 inside = 2.0 * mix(local, beyond, at) - vec2(child);
     precise float whole = leaf.scale * grown * 2.0;
-    uint first = leaf.points + TERMINAL_POINTS * level + 16u * (uint(child.x) + 2u * uint(child.y));
-    return Leaf(first, inside, whole, 0u, 0.0, leaf.base, leaf.origin, NODE_TERMINAL);
+    bool along = leaf.kind == NODE_CURVE_TERMINAL;
+    uint number = uint(child.x) + 2u * uint(child.y) - uint(at.x) - 2u * uint(at.y) - 1u;
+    uint place = along ? 16u * level : TERMINAL_POINTS * level + 16u * (number & 3u);
+    return Leaf(leaf.points + place, inside, whole, 0u, 0.0, leaf.base, leaf.origin, along ? NODE_REGULAR : NODE_TERMINAL);
 }
 
 // The tree of an edge is walked along v = 0.
@@ -140,7 +143,7 @@ Leaf find_leaf(uint root, vec2 from) {
     uint base = node.kind >> NODE_BASE_SHIFT & 15u;
     uint origin = node.kind >> NODE_ORIGIN_SHIFT & 15u;
     Leaf leaf = Leaf(node.points, uv, scale, place, node.sharpness, base, origin, kind);
-    if (kind == NODE_TERMINAL) return terminal_leaf(leaf, node.kind >> 8u & 255u);
+    if (kind == NODE_TERMINAL || kind == NODE_CURVE_TERMINAL) return terminal_leaf(leaf, node.kind >> 8u & 255u);
     return leaf;
 }
 

@@ -142,6 +142,8 @@ constants! {
     NODE_EXTRAORDINARY = 5;
     /// Node kind: a stretch of an edge; rows 1 and 2 are its position, and that plus the derivative across.
     NODE_CURVE = 6;
+    /// Node kind, of a face's edge: levels towards an extraordinary vertex at its end, a B-spline each.
+    NODE_CURVE_TERMINAL = 7;
     /// In a node's kind, the number of the stencil that its points are relative to, plus 1; 0 without one. Four bits.
     NODE_BASE_SHIFT = 16;
     /// In a node's kind, the use of the corner whose vertex that stencil is relative to; 0 where it is relative to the ring's first. Four bits.
@@ -174,8 +176,8 @@ constants! {
     LONG_PLACE_BITS = 16;
     /// In the first word of a stencil whose sum is relative to the vertex of corner 0; 1 to 3 more, to those of the others. These are the corners' uses.
     STENCIL_CORNER = 5;
-    /// Points in a level of a terminal node: sixteen for each of its children x + 2 y.
-    TERMINAL_POINTS = 64;
+    /// Points in a level of a terminal node: sixteen for each of three children, which follow that at the extraordinary vertex in the order x + 2 y, all around.
+    TERMINAL_POINTS = 48;
 
     /// Patch flag, shifted by the edge's number: beyond it lie two patches, of an n-gon or a finer level: so it gets an even number of segments.
     PATCH_EVEN_EDGE = 1;

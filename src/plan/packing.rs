@@ -7,8 +7,8 @@ use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::plan::builder::Plan;
 use crate::plan::packed_rows::{PackedRows, RowsView};
-use crate::plan::strip::Strip;
-use crate::plan::tree::{Node, NodeKind};
+use crate::plan::strip::{Stretch, Strip};
+use crate::plan::tree::{Node, NodeKind, child_of_corner};
 
 /// Where a packed plan's parts begin, and how many stencils each level needs.
 #[derive(Clone, Copy, Debug)]
@@ -26,9 +26,10 @@ pub struct PlanHeader {
     pub counts: [u32; abi::HIGHEST_LEVEL as usize + 2],
 }
 
-/// The points of a terminal node's children, of all levels: each has its own list, so that a row of points is two words wherever it is.
-fn children(levels: &[[u32; 25]]) -> Vec<u32> {
-    let places = (0..4).flat_map(|child| {
+/// The points of a terminal node's children that are B-splines, of all levels: each has its own list, so that a row of points is two words wherever it is.
+fn children(corner: u32, levels: &[[u32; 25]]) -> Vec<u32> {
+    let places = (1..4).flat_map(|step| {
+        let child = (child_of_corner(corner) + step) % 4;
         let first = child % 2 + 5 * (child / 2);
         (0..16).map(move |point| first + point % 4 + 5 * (point / 4))
     });
@@ -40,6 +41,15 @@ fn children(levels: &[[u32; 25]]) -> Vec<u32> {
             .collect::<Vec<u32>>()
     };
     levels.iter().flat_map(level).collect()
+}
+
+/// What a node's kind tells of the point that its points are relative to. Bases come first among the stencils, so their numbers are small.
+fn base_bits(plan: &Plan, base: Option<u32>) -> u32 {
+    base.map_or(0, |number| {
+        let corner = plan.stencils.corner(number as usize);
+        let origin = corner.map_or(0, |corner| abi::STENCIL_CORNER + corner);
+        (number + 1) << abi::NODE_BASE_SHIFT | origin << abi::NODE_ORIGIN_SHIFT
+    })
 }
 
 /// Plans packed one after another.
@@ -113,7 +123,30 @@ impl PackedPlans {
 
     /// Appends the tree of an edge that a face evaluates with points of its own plan, as far as it is not there; returns its root.
     pub fn push_strip(&mut self, plan: &Plan, strip: &Strip) -> u32 {
-        self.tree(&strip.nodes(), plan)
+        let root = self.stretch(plan, strip, 0, 0);
+        self.siblings(&[root])
+    }
+
+    /// What the tree of an edge has for the stretch from `at` / 2^`depth` to one more. Levels towards an extraordinary vertex are one node.
+    fn stretch(&mut self, plan: &Plan, strip: &Strip, depth: u32, at: u32) -> abi::Node {
+        if let Some(stretch) = strip.at(depth, at) {
+            return self.pack(&stretch.node(), plan, |children| children);
+        }
+        if let Some((end, levels)) = strip.approach(depth, at) {
+            let points: Vec<u32> = levels.iter().flat_map(Stretch::points).collect();
+            let base = base_bits(plan, levels.first().map(|level| level.base));
+            return abi::Node {
+                kind: abi::NODE_CURVE_TERMINAL | end << 4 | (levels.len() as u32) << 8 | base,
+                points: self.list(&points),
+                sharpness: 0.0,
+            };
+        }
+        let halves = [2 * at, 2 * at + 1].map(|half| self.stretch(plan, strip, depth + 1, half));
+        abi::Node {
+            kind: abi::NODE_INTERNAL,
+            points: self.siblings(&halves),
+            sharpness: 0.0,
+        }
     }
 
     /// Appends what is not there of a tree, whose nodes are in breadth-first order; returns its root. Points are numbers within a plan, so trees of different
@@ -170,7 +203,7 @@ impl PackedPlans {
                 levels,
                 base,
             } => {
-                let points = self.list(&children(levels));
+                let points = self.list(&children(*corner, levels));
                 (*corner, levels.len() as u32, points, *base, 0.0)
             }
             Node::Curve {
@@ -181,14 +214,8 @@ impl PackedPlans {
             } => (*edge, 0, self.list(points), *base, *sharpness),
             Node::Extraordinary { corner } => (*corner, 0, 0, None, 0.0),
         };
-        // Bases come first among the stencils, so their numbers are small.
-        let base = base.map_or(0, |number| {
-            let corner = plan.stencils.corner(number as usize);
-            let origin = corner.map_or(0, |corner| abi::STENCIL_CORNER + corner);
-            (number + 1) << abi::NODE_BASE_SHIFT | origin << abi::NODE_ORIGIN_SHIFT
-        });
         abi::Node {
-            kind: node.kind() as u32 | corner << 4 | levels << 8 | base,
+            kind: node.kind() as u32 | corner << 4 | levels << 8 | base_bits(plan, base),
             points,
             sharpness,
         }

@@ -3,8 +3,6 @@
 //! On an edge a B-spline is a sum of three rows of control points, those on the edge and those beside it. Where the faces on both sides have the
 //! same cells along it, and the same points in these, both can evaluate the edge with their own points, and need no others.
 
-use std::collections::VecDeque;
-
 use crate::plan::span::Span;
 use crate::plan::tree::{Node, child_of_corner};
 
@@ -44,15 +42,24 @@ impl Stretch {
         span
     }
 
-    /// The B-spline, along whose v = 0 the stretch is. Row 3 has no weight there.
-    fn node(&self) -> Node {
-        let Some([outside, on, inside]) = self.points else {
+    /// The control points, number x + 4 y, of the B-spline along whose v = 0 the stretch is; none where it ends in an extraordinary vertex. Row 3 has no
+    /// weight there.
+    pub(super) fn points(&self) -> impl Iterator<Item = u32> + use<> {
+        let rows = self
+            .points
+            .map(|[outside, on, inside]| [outside, on, inside, on]);
+        rows.into_iter().flatten().flatten()
+    }
+
+    /// The same as a node.
+    pub(super) fn node(&self) -> Node {
+        if self.points.is_none() {
             return Node::Extraordinary {
                 corner: u32::from(self.at > 0),
             };
-        };
-        let points = [outside, on, inside, on].concat();
-        let points = points.try_into().expect("four rows of four");
+        }
+        let mut all = self.points();
+        let points = std::array::from_fn(|_| all.next().unwrap_or_default());
         let base = Some(self.base);
         match self.crease {
             Crease::None => Node::Regular {
@@ -147,23 +154,32 @@ impl Strip {
         self.0.iter()
     }
 
-    /// The tree of the edge, of which inner nodes have two children, in breadth-first order.
-    pub(super) fn nodes(&self) -> Vec<Node> {
-        let mut nodes = Vec::new();
-        let mut queue = VecDeque::from([(0, 0)]);
-        let mut next = 1;
-        while let Some((depth, at)) = queue.pop_front() {
-            let own = |stretch: &&Stretch| (stretch.depth, stretch.at) == (depth, at);
-            match self.stretches().find(own) {
-                Some(stretch) => nodes.push(stretch.node()),
-                None => {
-                    nodes.push(Node::Internal { children: next });
-                    next += 2;
-                    queue.extend([(depth + 1, 2 * at), (depth + 1, 2 * at + 1)]);
+    /// The stretch from `at` / 2^`depth` to one more, if it is one.
+    pub(super) fn at(&self, depth: u32, at: u32) -> Option<&Stretch> {
+        let is_it = |stretch: &&Stretch| (stretch.depth, stretch.at) == (depth, at);
+        self.stretches().find(is_it)
+    }
+
+    /// The stretches of a part of the edge in which each is half of what is left towards an extraordinary vertex, if all are B-splines relative to the same point:
+    /// at which of the part's ends that is, and the stretches from the other end on.
+    pub(super) fn approach(&self, depth: u32, at: u32) -> Option<(u32, Vec<Stretch>)> {
+        let towards = |end: u32| {
+            let (mut depth, mut at) = (depth, at);
+            let mut levels: Vec<Stretch> = Vec::new();
+            loop {
+                (depth, at) = (depth + 1, 2 * at + end);
+                let far = *self.at(depth, at ^ 1)?;
+                let is_alike = levels.last().is_none_or(|last| last.base == far.base);
+                if far.points.is_none() || far.crease != Crease::None || !is_alike {
+                    return None;
+                }
+                levels.push(far);
+                if let Some(near) = self.at(depth, at) {
+                    return near.points.is_none().then_some((end, levels));
                 }
             }
-        }
-        nodes
+        };
+        [0, 1].into_iter().find_map(towards)
     }
 
     /// How many stretches there are.

@@ -71,18 +71,19 @@ fn leaf(node: &abi::Node, uv: Vec2, scale: f32) -> Leaf {
         kind,
     };
     match kind {
-        abi::NODE_TERMINAL => terminal(leaf, levels),
+        abi::NODE_TERMINAL | abi::NODE_CURVE_TERMINAL => terminal(leaf, levels),
         _ => leaf,
     }
 }
 
-/// The level is that of the larger distance from the extraordinary vertex: floor(-log2), read off the exponent of the float.
+/// The level is that of the larger distance from the extraordinary vertex: floor(-log2), read off the exponent of the float. Along an edge each is one B-spline.
 fn terminal(leaf: Leaf, levels: u32) -> Leaf {
     let Leaf {
         points,
         uv,
         scale,
         edge: corner,
+        kind,
         ..
     } = leaf;
     let [at_u, at_v] = sides(corner);
@@ -102,8 +103,15 @@ fn terminal(leaf: Leaf, levels: u32) -> Leaf {
     let (far_u, far_v) = (local.x >= 0.5, local.y >= 0.5);
     let (x, y) = (far_u != at_u, far_v != at_v);
     let local = Vec2::new(mirror(local.x, at_u), mirror(local.y, at_v));
+    let number = |x: bool, y: bool| x as u32 + 2 * y as u32;
+    let number = number(x, y).wrapping_sub(number(at_u, at_v) + 1) & 3;
+    let (place, kind) = match kind {
+        abi::NODE_CURVE_TERMINAL => (16 * level, abi::NODE_REGULAR),
+        _ => (abi::TERMINAL_POINTS * level + 16 * number, kind),
+    };
     Leaf {
-        points: points + abi::TERMINAL_POINTS * level + 16 * (x as u32 + 2 * y as u32),
+        points: points + place,
+        kind,
         uv: 2.0 * local - Vec2::new(f32::from(x as u8), f32::from(y as u8)),
         scale: scale * grown * 2.0,
         edge: 0,

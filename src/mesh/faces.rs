@@ -115,9 +115,15 @@ impl Faces {
 
     /// Where the corners of a face stand in arrays with one entry a corner; nowhere if there is no such face.
     pub fn range(&self, face: usize) -> std::ops::Range<usize> {
-        match face < self.len() {
-            true => self.offset(face)..self.offset(face + 1),
-            false => 0..0,
+        if self.only_quads {
+            return match face < self.len() {
+                true => 4 * face..4 * face + 4,
+                false => 0..0,
+            };
+        }
+        match self.offsets.get(face..) {
+            Some(&[start, end, ..]) => start as usize..end as usize,
+            _ => 0..0,
         }
     }
 

@@ -274,3 +274,57 @@ impl Plans<'_> {
         Some(pair >> (16 * (number % 2)) & 0xffff)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::mesh::builtin;
+    use crate::mesh::topology::Topology;
+    use crate::plan::{PlanOptions, Ring, walk};
+
+    #[test]
+    fn trees_of_edges_lead_to_the_points_of_their_stretches() {
+        let (mut packed, mut stretches) = (PackedPlans::default(), 0);
+        for name in ["hull", "creased-torus", "cubes-2x2x2", "pole-7"] {
+            let topology = Topology::new(&builtin(name).expect("it is built in"));
+            let faces = 0..topology.face_count() as u32;
+            for ring in faces.filter_map(|face| Ring::of_quad(&topology, face)) {
+                let plan = Plan::build(&ring.configuration, PlanOptions::default());
+                let plan = plan.expect("a sound configuration");
+                let turns = [(false, false), (true, false), (false, true), (true, true)];
+                let strips = plan.strips.iter().flatten().flat_map(|strip| {
+                    turns.map(|(mirrored, reversed)| strip.turned(mirrored, reversed))
+                });
+                for strip in strips {
+                    let root = packed.push_strip(&plan, &strip);
+                    for stretch in strip.stretches() {
+                        let size = 0.5f32.powi(stretch.depth as i32);
+                        let inside = [0.25, 0.5, 0.7].map(|t| (stretch.at as f32 + t) * size);
+                        for t in inside {
+                            let leaf = walk(packed.view(), root, Vec2::new(t, 0.0));
+                            let leaf = leaf.expect("there is the tree");
+                            if stretch.points.is_none() {
+                                let end = if stretch.at > 0 { 1.0 } else { 0.0 };
+                                let leaf = walk(packed.view(), root, Vec2::new(end, 0.0));
+                                let kind = leaf.map(|leaf| leaf.kind);
+                                assert_eq!(kind, Some(abi::NODE_EXTRAORDINARY));
+                                continue;
+                            }
+                            let own = (0..16).map(|i| packed.view().point(leaf.points + i));
+                            assert!(own.eq(stretch.points().map(Some)), "{name}: {t}");
+                            assert_eq!((leaf.base, leaf.scale * size), (stretch.base + 1, 1.0));
+                            let local = t / size - stretch.at as f32;
+                            assert!((leaf.uv.x - local).abs() < 1e-5 && leaf.uv.y == 0.0);
+                            stretches += 1;
+                        }
+                    }
+                }
+            }
+        }
+        let is_terminal = |node: &&abi::Node| node.kind & 15 == abi::NODE_CURVE_TERMINAL;
+        let terminal = packed.nodes.iter().filter(is_terminal).count();
+        assert!(stretches > 1000 && terminal > 10, "{stretches}, {terminal}");
+    }
+}

@@ -24,8 +24,8 @@ struct Subject<'a> {
     cut: Cut,
 }
 
-/// Pipelines whose pictures tell which patch is seen, and none from behind. Not by the rasteriser's culling: where a triangle of a draw is clipped, llvmpipe culls that
-/// draw's triangles by their places before these are rounded, else behind, and slivers come and go with patches at the picture's edge
+/// Pipelines whose pictures tell which patch is seen, and none from behind. Not by the rasteriser's culling: llvmpipe culls triangles as they are where another one of
+/// the draw is clipped, else as they are when rounded, so that slivers come and go with patches at the picture's edge
 /// (`src/conformance/bugs/culled_before_rounding.md`).
 fn fronts(gpu: &Gpu, loaded: &Loaded<'_>, style: Style) -> Owned<Pipelines> {
     let device = gpu.device.raw();

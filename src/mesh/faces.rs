@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// The vertices of faces of any arity, one face after another. A face that was removed has none, and keeps its number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Faces {
-    /// Where each face begins, and at last where the last one ends.
+    /// Where each face begins, and at last where the last one ends; empty where all are quads.
     offsets: Vec<u32>,
     vertices: Vec<u32>,
     only_quads: bool,
@@ -27,7 +27,7 @@ impl Faces {
     pub fn new(offsets: Vec<u32>, vertices: Vec<u32>) -> Faces {
         let only_quads = offsets.windows(2).all(|pair| pair[1] - pair[0] == 4);
         Faces {
-            offsets,
+            offsets: if only_quads { Vec::new() } else { offsets },
             vertices,
             only_quads,
             removed: BTreeMap::new(),
@@ -48,11 +48,11 @@ impl Faces {
         let mut keep = |until: usize, offsets: &mut Vec<u32>, vertices: &mut Vec<u32>| {
             let until = until.min(self.len());
             if next < until {
-                let (start, end) = (self.offsets[next], self.offsets[until]);
-                let first = vertices.len() as u32;
-                let ends = &self.offsets[next + 1..=until];
-                offsets.extend(ends.iter().map(|end| end - start + first));
-                vertices.extend_from_slice(&self.vertices[start as usize..end as usize]);
+                let (start, end) = (self.offset(next), self.offset(until));
+                let first = vertices.len();
+                let ends = (next + 1..=until).map(|face| self.offset(face) - start + first);
+                offsets.extend(ends.map(|end| end as u32));
+                vertices.extend_from_slice(&self.vertices[start..end]);
             }
             next = until + 1;
         };
@@ -86,7 +86,18 @@ impl Faces {
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.offsets.len().saturating_sub(1)
+        match self.only_quads {
+            true => self.vertices.len() / 4,
+            false => self.offsets.len().saturating_sub(1),
+        }
+    }
+
+    /// Where a face begins, or the last one ends.
+    fn offset(&self, face: usize) -> usize {
+        match self.only_quads {
+            true => 4 * face,
+            false => self.offsets[face] as usize,
+        }
     }
 
     /// The faces that were removed, with the corners that each had.
@@ -104,16 +115,18 @@ impl Faces {
 
     /// Where the corners of a face stand in arrays with one entry a corner; nowhere if there is no such face.
     pub fn range(&self, face: usize) -> std::ops::Range<usize> {
-        match self.offsets.get(face..) {
-            Some(&[start, end, ..]) => start as usize..end as usize,
-            _ => 0..0,
+        match face < self.len() {
+            true => self.offset(face)..self.offset(face + 1),
+            false => 0..0,
         }
     }
 
     /// Where the corners of a face without any would stand: behind those of the one before.
     pub fn start(&self, face: usize) -> std::ops::Range<usize> {
-        let start = self.offsets.get(face).or(self.offsets.last());
-        let start = start.map_or(0, |&start| start as usize);
+        let start = match self.len() {
+            0 => 0,
+            count => self.offset(face.min(count)),
+        };
         start..start
     }
 

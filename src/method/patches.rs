@@ -1,8 +1,6 @@
 //! What every method's patches have in common: one a triangle or quad that the scheme takes whole, one a corner of other faces, with their
 //! flags, valences and texture coordinates.
 
-use smallvec::SmallVec;
-
 use crate::abi;
 use crate::mesh::Model;
 use crate::tessellation::Domain;
@@ -23,15 +21,21 @@ pub struct Part {
 /// The parts of every face that is no hole, in ptex order.
 pub fn parts(model: &Model) -> Vec<Part> {
     let mut parts = Vec::with_capacity(model.mesh().ptex_count());
-    let mut ptex = 0;
-    for face in 0..model.topology().face_count() as u32 {
-        let all = parts_at(model, face, ptex);
-        ptex += model.mesh().ptex_faces(face as usize) as u32;
-        if !model.topology().is_hole(face) {
-            parts.extend(all);
-        }
-    }
+    parts.extend(each_part(model));
     parts
+}
+
+/// The same, one after another.
+pub fn each_part(model: &Model) -> impl Iterator<Item = Part> {
+    let mut next = 0;
+    let faces = 0..model.topology().face_count() as u32;
+    faces.flat_map(move |face| {
+        let ptex = next;
+        next += model.mesh().ptex_faces(face as usize) as u32;
+        let is_drawn = !model.topology().is_hole(face);
+        let all = is_drawn.then(|| parts_at(model, face, ptex));
+        all.into_iter().flatten()
+    })
 }
 
 /// The parts of those of some faces, in ascending order, that are no holes, and the ptex faces of the others, removed ones included.
@@ -117,23 +121,20 @@ pub fn texture(model: &Model, part: Part, turn: u32) -> [[f32; 2]; 4] {
         None => own,
         Some(texture) => {
             let indices = &texture.indices[mesh.corner_range(part.face as usize)];
-            let values: SmallVec<[glam::DVec2; 4]> = indices
-                .iter()
-                .map(|&index| texture.values[index as usize])
-                .collect();
-            let (n, i) = (values.len(), part.corner as usize);
-            let middle = |other: usize| (values[i] + values[other % n]) / 2.0;
-            let corners = if part.domain == Domain::Triangles {
-                [values[0], values[1], values[2], values[2]]
-            } else if n == 4 {
-                [values[0], values[1], values[2], values[3]]
-            } else {
-                [
-                    values[i],
+            let value = |&index: &u32| texture.values[index as usize];
+            let (n, i) = (indices.len(), part.corner as usize);
+            let middle = |other: usize| (value(&indices[i]) + value(&indices[other % n])) / 2.0;
+            let corners = match *indices {
+                [a, b, c, d] => [a, b, c, d].map(|index| value(&index)),
+                [a, b, c] if part.domain == Domain::Triangles => {
+                    [a, b, c, c].map(|index| value(&index))
+                }
+                _ => [
+                    value(&indices[i]),
                     middle(i + 1),
-                    values.iter().sum::<glam::DVec2>() / n as f64,
+                    indices.iter().map(value).sum::<glam::DVec2>() / n as f64,
                     middle(i + n - 1),
-                ]
+                ],
             };
             corners.map(|corner| corner.as_vec2().to_array())
         }

@@ -35,7 +35,7 @@ use crate::error::Result;
 use crate::mesh::topology::Hubs;
 use crate::mesh::{ChangeSet, Model, Scheme};
 use crate::method::editable::Edits;
-use crate::method::patches::{self, Part};
+use crate::method::patches;
 use crate::method::{
     Contract, MacroFaces, Method, MethodOptions, Pass, PassChange, Prepared, Reproduces,
 };
@@ -166,11 +166,12 @@ impl Edits for Planner {
         let (parts, gone) = patches::parts_of(model, faces);
         self.renumber(changes, model.topology());
         let wanted = Wanted {
-            faces,
-            parts: &parts,
+            faces: Some(faces),
+            parts: parts.into_iter(),
             gone: &gone,
         };
-        self.plan(&mut prepared.passes, model, &wanted, database)
+        let smooth = SmoothQuads::new(model.topology());
+        self.plan(&mut prepared.passes, model, &smooth, wanted, database)
     }
 }
 
@@ -183,15 +184,6 @@ fn planned(
 ) -> Result<(Prepared, Planner)> {
     let options = options.plans.check()?;
     let started = Instant::now();
-    let mut passes = passes(options);
-    let parts = patches::parts(model);
-    let regular = {
-        let smooth = SmoothQuads::new(model.topology());
-        let is_regular = |part: &&Part| smooth.is_regular(part.face);
-        parts.iter().filter(is_regular).count()
-    };
-    reserve(&mut passes[0], regular, 16);
-    reserve(&mut passes[1], parts.len() - regular, RING);
     // What is edited has rings that tell all.
     let hubs = match keeps {
         true => Hubs::default(),
@@ -199,14 +191,24 @@ fn planned(
     };
     let points = hubs::points(model.topology(), &hubs, options)?;
     let hubbed = (!hubs.is_empty()).then(|| model.topology().clone().with_hubs(hubs));
-    let mut planner = Planner::new(options, keeps, hubbed);
-    let faces: Vec<u32> = (0..model.topology().face_count() as u32).collect();
+    let smooth = SmoothQuads::new(hubbed.as_ref().unwrap_or(model.topology()));
+    let parts = || patches::each_part(model);
+    let [mut regular, mut all] = [0; 2];
+    for part in parts() {
+        regular += usize::from(smooth.is_regular(part.face));
+        all += 1;
+    }
+    let mut passes = passes(options);
+    reserve(&mut passes[0], regular, 16);
+    reserve(&mut passes[1], all - regular, RING);
+    let mut planner = Planner::new(options, keeps);
     let wanted = Wanted {
-        faces: &faces,
-        parts: &parts,
+        faces: None,
+        parts: parts(),
         gone: &[],
     };
-    planner.plan(&mut passes, model, &wanted, database)?;
+    planner.plan(&mut passes, model, &smooth, wanted, database)?;
+    drop(smooth);
     for pass in &mut passes {
         pass.patches.shrink_to_fit();
         pass.texture.shrink_to_fit();

@@ -4,7 +4,6 @@
 use glam::{Vec2, Vec3};
 
 use crate::abi;
-use crate::mesh::topology::Topology;
 use crate::method::spline::bspline;
 use crate::method::surface::Surface;
 use crate::patch::bspline::basis_of;
@@ -80,33 +79,22 @@ pub fn exchanged(Surface { position, du, dv }: Surface) -> Surface {
     }
 }
 
-/// Whether sums at a plain vertex go first along the edge that enters the corner, instead of the one that leaves it: along those two of the
-/// vertex's edges that have the lowest number.
-pub fn is_turned_corner(
-    topology: &Topology,
-    smooth: &SmoothQuads<'_>,
-    face: u32,
-    corner: u32,
-) -> bool {
-    let vertex = topology.face(face)[corner as usize];
-    let edges = topology.face_edges(face);
-    let [leaving, entering] = [corner, corner + 3].map(|i| edges[i as usize % 4]);
-    let lowest = topology.vertex_edges(vertex)[0];
-    if lowest == leaving || lowest == entering {
-        return lowest == entering;
-    }
-    // Beyond the edge that enters lies a face with the one that goes on from the edge that leaves.
-    let beyond = smooth.around(4 * face + corner) / 4;
-    !topology.face_edges(beyond).contains(&lowest)
+/// Whether sums at a plain vertex go first along the edge that enters the corner of a face at which a side begins, instead of along the side itself. It is up to
+/// the lowest of the four sides that begin at the vertex: there they go first along the side if it is the first of its face, and all faces around agree.
+pub fn is_turned_corner(smooth: &SmoothQuads<'_>, side: u32) -> bool {
+    let [before, after] = smooth.beside(side);
+    let opposite = smooth.around(after);
+    let (even, odd) = (side.min(opposite), before.min(after));
+    // From face to face, what leaves and what enters change places.
+    (even.min(odd) % 4 != 0) != (odd < even)
 }
 
 /// The flags of those plain corners of a patch at which sums go along v first. Corner 0 of the patch is the face's corner `turn`.
-pub fn turned_corners(topology: &Topology, smooth: &SmoothQuads<'_>, face: u32, turn: u32) -> u32 {
-    let vertices = topology.face(face);
+pub fn turned_corners(smooth: &SmoothQuads<'_>, face: u32, turn: u32) -> u32 {
     let is_turned = |&corner: &u32| {
-        let own = (turn + corner) % 4;
-        smooth.valence(vertices[own as usize]) == Some(4)
-            && is_turned_corner(topology, smooth, face, own) != (corner % 2 == 1)
+        let side = SmoothQuads::after(4 * face, turn + corner);
+        smooth.valence(smooth.vertex_after(side, 0)) == Some(4)
+            && is_turned_corner(smooth, side) != (corner % 2 == 1)
     };
     let turned = (0..4).filter(is_turned);
     turned

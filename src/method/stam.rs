@@ -216,7 +216,7 @@ impl Builder<'_> {
     fn add(&mut self, face: &Face) {
         let turn = face.extraordinary.unwrap_or(0);
         let (mut patch, texture) = face.patch(self.model, &self.net.topology, turn);
-        patch.flags |= turned_corners(&self.net.topology, self.smooth, face.number, turn);
+        patch.flags |= turned_corners(self.smooth, face.number, turn);
         let pass = match face.extraordinary {
             None => &mut self.regular,
             Some(_) => &mut self.irregular,

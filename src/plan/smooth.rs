@@ -76,6 +76,11 @@ impl<'a> SmoothQuads<'a> {
         }
     }
 
+    /// The topology that it is of.
+    pub fn topology(&self) -> &'a Topology {
+        self.topology
+    }
+
     /// The side after one in its face, or so many after.
     pub fn after(side: u32, steps: u32) -> u32 {
         side & !3 | side.wrapping_add(steps) & 3
@@ -141,6 +146,14 @@ impl<'a> SmoothQuads<'a> {
     /// From a side to that of the next face around the vertex at which it begins, counter-clockwise. That vertex must be smooth.
     pub fn around(&self, side: u32) -> u32 {
         self.beyond[Self::after(side, 3) as usize]
+    }
+
+    /// From a side to those of the faces before and after it around the vertex at which it begins, counter-clockwise. That vertex must be smooth.
+    pub fn beside(&self, side: u32) -> [u32; 2] {
+        [
+            Self::after(self.beyond[side as usize], 1),
+            self.around(side),
+        ]
     }
 
     /// From a side to that of the next face around the vertex at which it ends, clockwise.

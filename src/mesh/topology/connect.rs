@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
 
 use crate::mesh::SchemeOptions;
 use crate::mesh::faces::Faces;
@@ -129,59 +128,55 @@ impl Topology {
     /// For each side of a face, the first side that joins the same two vertices; linear in their number, however many meet in a vertex.
     fn first_alike(&self) -> Vec<u32> {
         let mut first: Vec<u32> = (0..self.faces.vertices().len() as u32).collect();
-        let mut met: SmallVec<[(u32, u32); 2 * FEW]> = SmallVec::new();
         let mut many = Vec::new();
         for vertex in 0..self.vertex_count() as u32 {
             let corners = self.vertex_faces.get(vertex);
             if corners.len() > FEW {
                 many.resize(self.vertex_count(), (u32::MAX, 0));
-            }
-            met.clear();
-            for &FaceCorner { face, corner } in corners {
-                let start = self.side(face, 0);
-                let vertices = self.face(face);
-                let before = if corner == 0 {
-                    vertices.len() as u32
-                } else {
-                    corner
-                } - 1;
-                let after = if corner as usize + 1 == vertices.len() {
-                    0
-                } else {
-                    corner + 1
-                };
-                // By the side's lower end, the earlier side first.
-                let mut sides = [
-                    (start + before, vertices[before as usize]),
-                    (start + corner, vertices[after as usize]),
-                ];
-                if corner == 0 {
-                    sides.swap(0, 1);
-                }
-                for (side, other) in sides.into_iter().filter(|&(_, other)| other > vertex) {
-                    let known = if corners.len() <= FEW {
-                        let found = met.iter().find(|known| known.0 == other);
-                        found.map(|&(_, first)| first).or_else(|| {
-                            met.push((other, side));
-                            None
-                        })
+                self.each_side_up(vertex, |side, other| {
+                    // What another vertex left is stale.
+                    let (of, known) = &mut many[other as usize];
+                    if *of == vertex {
+                        first[side as usize] = *known;
                     } else {
-                        // What another vertex left is stale.
-                        let (of, first) = &mut many[other as usize];
-                        if *of == vertex {
-                            Some(*first)
-                        } else {
-                            (*of, *first) = (vertex, side);
-                            None
-                        }
-                    };
-                    if let Some(known) = known {
-                        first[side as usize] = known;
+                        (*of, *known) = (vertex, side);
                     }
+                });
+                continue;
+            }
+            let (mut others, mut sides, mut met) = ([0; 2 * FEW], [0; 2 * FEW], 0);
+            self.each_side_up(vertex, |side, other| {
+                match others[..met].iter().position(|&known| known == other) {
+                    Some(place) => first[side as usize] = sides[place],
+                    None => {
+                        (others[met], sides[met]) = (other, side);
+                        met += 1;
+                    }
+                }
+            });
+        }
+        first
+    }
+
+    /// Visits the sides at a vertex whose other end has a greater number, with that end; the earlier side first.
+    fn each_side_up(&self, vertex: u32, mut visit: impl FnMut(u32, u32)) {
+        for &FaceCorner { face, corner } in self.vertex_faces.get(vertex) {
+            let range = self.faces.range(face as usize);
+            let (start, vertices) = (range.start as u32, &self.faces.vertices()[range]);
+            let last = vertices.len() as u32 - 1;
+            let before = if corner == 0 { last } else { corner - 1 };
+            let after = if corner == last { 0 } else { corner + 1 };
+            let mut sides = [(before, before), (corner, after)];
+            if corner == 0 {
+                sides.swap(0, 1);
+            }
+            for (side, end) in sides {
+                let other = vertices[end as usize];
+                if other > vertex {
+                    visit(start + side, other);
                 }
             }
         }
-        first
     }
 
     /// Numbers the edges in the order in which the faces first show them; `first` tells for each side the first of its edge. Then fills the lists that

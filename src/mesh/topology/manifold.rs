@@ -52,37 +52,36 @@ impl Topology {
     /// Whether the faces around `vertex`, all of whose edges are manifold, hang together, as far as few faces tell at once.
     fn is_plain_fan(&self, vertex: u32) -> bool {
         let corners = self.vertex_faces.get(vertex);
-        let mut sides: SmallVec<[[u32; 2]; 8]> = SmallVec::new();
-        if corners.len() > sides.inline_size() {
+        let count = corners.len();
+        if count > FEW {
             return false;
         }
-        for &FaceCorner { face, corner } in corners {
+        // The edges that leave and enter the vertex in each face.
+        let mut sides = [[0; FEW]; 2];
+        for (place, &FaceCorner { face, corner }) in corners.iter().enumerate() {
             let edges = self.face_edges(face);
-            let before = if corner == 0 {
-                edges.len()
-            } else {
-                corner as usize
-            } - 1;
-            sides.push([edges[corner as usize], edges[before]]);
+            let last = edges.len() - 1;
+            let corner = corner as usize;
+            let before = if corner == 0 { last } else { corner - 1 };
+            (sides[0][place], sides[1][place]) = (edges[corner], edges[before]);
         }
-        let Some(&[next, before]) = sides.first() else {
-            return true;
-        };
         // From the first face around, and where that does not lead back, from its other side the other way.
-        let mut met = 1;
-        for (side, mut at, end) in [(0, next, before), (1, before, next)] {
-            while let Some(&own) = sides.iter().find(|own| own[1 - side] == at) {
-                if at == end {
-                    return met == sides.len();
+        let mut met = count.min(1);
+        for side in [0, 1] {
+            let (own, others) = (&sides[side], &sides[1 - side][..count]);
+            let (mut at, end) = (own[0], others.first().copied());
+            while let Some(next) = others.iter().position(|&other| other == at) {
+                if Some(at) == end {
+                    return met == count;
                 }
-                at = own[side];
+                at = own[next];
                 met += 1;
-                if met > sides.len() {
+                if met > count {
                     return false;
                 }
             }
         }
-        met == sides.len()
+        met == count
     }
 
     fn is_interpolated_corner(&self, vertex: u32) -> bool {
@@ -147,3 +146,6 @@ impl Topology {
         (met, at.1)
     }
 }
+
+/// The faces around a vertex are few up to so many: they are searched one by one.
+const FEW: usize = 8;

@@ -24,6 +24,8 @@ struct Side<'a> {
     plan: &'a Plan,
     /// The edge of the patch, 0..=3.
     edge: u32,
+    /// Whether it runs against the direction of the mesh's edge.
+    flipped: bool,
     /// The rows of all plans, and the number of the first of this one.
     rows: RowsView<'a>,
     first_row: u32,
@@ -42,14 +44,15 @@ pub fn agreed_edges(
 ) -> Vec<u32> {
     let pairs = pairs(topology, smooth, patches, slots);
     let packed = &store.packed;
-    let side = |number: u32| {
-        let patch = patches.get(number / 4);
+    let side = |number: Number| {
+        let patch = patches.get(number.slot());
         let plan = patch.record.plan as usize;
         Side {
             topology,
             patch,
             plan: store.plan(patch.record.plan),
-            edge: number % 4,
+            edge: number.edge(),
+            flipped: number.is_flipped(),
             rows: packed.rows.view(),
             first_row: packed.headers[plan].rows,
         }
@@ -81,19 +84,19 @@ pub fn agreed_edges(
 /// Takes down which edges of some faces are agreed upon, and adds the patches beyond those of which that has changed.
 pub fn agree(
     topology: &Topology,
-    faces: &[u32],
+    faces: Option<&[u32]>,
     now: &[u32],
     agreed: &mut [bool],
     patches: &Irregulars<'_>,
     slots: &mut Vec<u32>,
 ) {
-    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
-    // Where all patches are here anyway, none is to be added.
-    if slots.len() == patches.records.len() {
-        edges().for_each(|&edge| agreed[edge as usize] = false);
+    let Some(faces) = faces else {
+        // All patches are here, so none is to be added.
+        agreed.fill(false);
         now.iter().for_each(|&edge| agreed[edge as usize] = true);
         return;
-    }
+    };
+    let edges = || faces.iter().flat_map(|&face| topology.face_edges(face));
     let before: Vec<bool> = edges().map(|&edge| agreed[edge as usize]).collect();
     edges().for_each(|&edge| agreed[edge as usize] = false);
     now.iter().for_each(|&edge| agreed[edge as usize] = true);
@@ -125,26 +128,48 @@ enum Key {
     Any(Box<[u8]>),
 }
 
-/// The two sides of each edge of some patches that quads with plans have on both, and that is neither plain nor infinitely sharp; each a number, 4 times the
-/// patch and its edge. That of the lower face comes first, whoever asks.
+/// A side by its patch and edge, and whether it runs against the direction of the mesh's edge.
+#[derive(Clone, Copy)]
+struct Number(u32);
+
+impl Number {
+    fn new(slot: u32, edge: u32, flipped: bool) -> Number {
+        Number(slot << 3 | edge << 1 | u32::from(flipped))
+    }
+
+    fn slot(self) -> u32 {
+        self.0 >> 3
+    }
+
+    fn edge(self) -> u32 {
+        self.0 >> 1 & 3
+    }
+
+    fn is_flipped(self) -> bool {
+        self.0 & 1 != 0
+    }
+}
+
+/// The two sides of each edge of some patches that quads with plans have on both, and that is neither plain nor infinitely sharp. That of the lower face comes
+/// first, whoever asks.
 fn pairs(
     topology: &Topology,
     smooth: &SmoothQuads<'_>,
     patches: &Irregulars<'_>,
     slots: &[u32],
-) -> Vec<[u32; 2]> {
+) -> Vec<[Number; 2]> {
     let mut met = vec![false; topology.edge_count()];
     let mut pairs = Vec::new();
     for &slot in slots {
-        let patch = patches.get(slot);
-        let face = patch.record.part.face;
+        let face = patches.records[slot as usize].part.face;
         // Sums over longer rings are compensated, and so depend on the weights that are zero.
         if patches.of_face(face) != Some(slot) {
             continue;
         }
-        let turn = patch.turn(topology);
+        let turn = patches.turn(slot);
         for edge in 0..4 {
-            let at = topology.face_edges(face)[((turn + edge) % 4) as usize];
+            let corner = ((turn + edge) % 4) as usize;
+            let at = topology.face_edges(face)[corner];
             let &[one, two] = topology.edge_faces(at) else {
                 continue;
             };
@@ -158,16 +183,17 @@ fn pairs(
                 continue;
             };
             met[at as usize] = true;
+            let is_flipped = |face, corner| topology.face(face)[corner] != own.vertices[0];
+            let number = Number::new(slot, edge, is_flipped(face, corner));
             let edges = topology.face_edges(beyond).iter();
             let corner = edges.into_iter().position(|&edge| edge == at);
-            let corner = corner.expect("a face on the edge has it") as u32;
-            let turn = patches.get(other).turn(topology);
-            let own = 4 * slot + edge;
-            let other = 4 * other + (corner + 4 - turn) % 4;
+            let corner = corner.expect("a face on the edge has it");
+            let edge = (corner as u32 + 4 - patches.turn(other)) % 4;
+            let other = Number::new(other, edge, is_flipped(beyond, corner));
             pairs.push(if beyond < face {
-                [other, own]
+                [other, number]
             } else {
-                [own, other]
+                [number, other]
             });
         }
     }
@@ -201,7 +227,7 @@ impl Side<'_> {
 
     fn key(self, other: Side<'_>) -> Key {
         let words = [self, other].map(|side| {
-            let flags = u32::from(side.patch.record.mirrored) | u32::from(side.is_flipped()) << 1;
+            let flags = u32::from(side.patch.record.mirrored) | u32::from(side.flipped) << 1;
             side.edge | flags << 2 | side.patch.record.plan << 4
         });
         if self.is_smooth_with(other) {
@@ -220,13 +246,9 @@ impl Side<'_> {
         self.patch.record.is_smooth && other.patch.record.is_smooth
     }
 
-    fn is_flipped(self) -> bool {
-        self.patch.is_flipped(self.topology, self.edge)
-    }
-
     /// The stretches in the direction of the mesh's edge.
     fn stretches(self, strip: &Strip) -> impl Iterator<Item = Stretch> + '_ {
-        strip.seen(self.patch.record.mirrored, self.is_flipped())
+        strip.seen(self.patch.record.mirrored, self.flipped)
     }
 
     fn agrees(self, other: Side<'_>) -> bool {
@@ -234,7 +256,7 @@ impl Side<'_> {
         let [Some(one), Some(two)] = strips else {
             return false;
         };
-        if self.is_flipped() == other.is_flipped() || one.count() != two.count() {
+        if self.flipped == other.flipped || one.count() != two.count() {
             return false;
         }
         let places = self.places_in(other);

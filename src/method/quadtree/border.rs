@@ -16,12 +16,14 @@ use crate::error::{Error, Misuse, Result};
 use crate::mesh::topology::{Hub, Topology};
 use crate::method::quadtree::hubs::{self, hub_of};
 use crate::method::quadtree::in_ring::{InRing, List, Plain};
-use crate::method::quadtree::irregular::{Irregular, Irregulars, Record};
+use crate::method::quadtree::irregular::{Irregular, Irregulars};
 use crate::method::quadtree::places;
 use crate::method::quadtree::plain::{edge_rows, is_plain, vertex_rows};
 use crate::method::quadtree::sides::{lines, points};
 use crate::method::quadtree::store::Store;
-use crate::method::quadtree::subjects::{Known, LONG, Line, LongRings, Point, Shared, Subject};
+use crate::method::quadtree::subjects::{
+    Known, LONG, Line, LongRings, Point, Shared, Subject, Subjects,
+};
 use crate::method::regular::is_turned_corner;
 use crate::plan::{Database, PlanOptions, Ring, Side, SmoothQuads};
 
@@ -94,29 +96,30 @@ impl Borders {
             let ends = topology.edge(edge).vertices;
             agreed[edge as usize] || ends.iter().all(|&vertex| is_plain(smooth, vertex))
         };
-        let records = || slots.iter().map(|&slot| &patches.records[slot as usize]);
-        // Of most faces around which all is smooth no edge needs a plan.
-        let is_all_settled = |record: &Record| {
-            let edges = topology.face_edges(record.part.face);
-            record.is_smooth && edges.iter().all(|&edge| is_settled(edge))
-        };
-        let unsettled = records().filter(|record| !is_all_settled(record));
-        let lines = unsettled.flat_map(|record| {
-            let lines = lines(topology, record.part, record.turn(topology));
-            lines.into_iter().map(|(line, ..)| line)
-        });
-        let lines = lines.filter(|&line| !matches!(line, Line::Edge(edge) if is_settled(edge)));
-        let lines = Shared::new(topology, smooth, lines, store, options, database)?;
-        let vertices = records().flat_map(|record| {
-            let points = points(topology, record.part, record.turn(topology));
-            points.into_iter().flatten()
-        });
         let needs_none = |point: Point| {
             matches!(point, Point::Vertex(vertex) if is_plain(smooth, vertex))
                 || hub_of(topology, point).is_some()
         };
-        let vertices = vertices.filter(|&point| !needs_none(point));
-        let vertices = Shared::new(topology, smooth, vertices, store, options, database)?;
+        let (mut all_lines, mut all_points) = (Subjects::new(), Subjects::new());
+        for record in slots.iter().map(|&slot| &patches.records[slot as usize]) {
+            let turn = record.turn(topology);
+            let edges = topology.face_edges(record.part.face);
+            // Of most faces around which all is smooth no edge needs a plan.
+            if !record.is_smooth || !edges.iter().all(|&edge| is_settled(edge)) {
+                for (line, ..) in lines(topology, record.part, turn) {
+                    if !matches!(line, Line::Edge(edge) if is_settled(edge)) {
+                        all_lines.add(topology, line);
+                    }
+                }
+            }
+            for point in points(topology, record.part, turn).into_iter().flatten() {
+                if !needs_none(point) {
+                    all_points.add(topology, point);
+                }
+            }
+        }
+        let lines = Shared::new(smooth, all_lines, store, options, database)?;
+        let vertices = Shared::new(smooth, all_points, store, options, database)?;
         let mut builder = Builder {
             topology,
             smooth,
@@ -137,14 +140,13 @@ impl Borders {
             let patch = patches.get(slot);
             let looks = patch.record.is_smooth.then(|| builder.looks(patch));
             let known = looks.and_then(|looks| smooth_borders.get(&looks));
-            let number = match known {
-                Some(&known) => known,
-                None => {
-                    let border = builder.border(patch)?;
-                    let Borders { known, records, .. } = &mut *builder.borders;
-                    numbered(known, records, border)
-                }
-            };
+            if let Some(&known) = known {
+                numbers.push(known);
+                continue;
+            }
+            let border = builder.border(patch)?;
+            let Borders { known, records, .. } = &mut *builder.borders;
+            let number = numbered(known, records, border);
             if let Some(looks) = looks {
                 smooth_borders.insert(looks, number);
             }
@@ -243,7 +245,7 @@ impl Builder<'_> {
             };
             let point = self.vertices.get(topology, Point::Vertex(from));
             looks[5 + i as usize] = match point {
-                None => is_turned_corner(topology, self.smooth, face, corner).into(),
+                None => is_turned_corner(self.smooth, 4 * face + corner).into(),
                 Some(known) => 2 + (known.plan << 5 | self.smooth.place_around(face, corner)),
             };
         }
@@ -338,7 +340,7 @@ impl Builder<'_> {
                 }
                 None => {
                     let face_corner = (turn + corner) % 4;
-                    let turned = is_turned_corner(topology, smooth, part.face, face_corner);
+                    let turned = is_turned_corner(smooth, 4 * part.face + face_corner);
                     let quarters = (corner + u32::from(turned)) % 4;
                     uses[number].flags = quarters << abi::USE_TURN_SHIFT;
                     let vertices = vertex_rows(smooth, part.face, face_corner, turned);
@@ -443,7 +445,7 @@ impl Builder<'_> {
     fn list(&mut self, ring: usize, places: &[u32]) -> u32 {
         let (all, first) = (&mut self.places, self.first_place);
         let mut words = List::new();
-        places::push(&mut words, ring, places.iter().copied());
+        places::push(&mut words, ring, places);
         *self
             .borders
             .lists

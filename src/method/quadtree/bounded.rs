@@ -120,8 +120,9 @@ pub fn is_crowded(topology: &Topology) -> bool {
 /// So many faces or corners are a crowd.
 const CROWD: usize = 64;
 
-/// How many of the parts, `most` at most, are looked at in parallel before what they show is kept once: fewer where much is around them.
-pub fn some(topology: &Topology, parts: &[Part], most: usize) -> usize {
+/// How many of some parts are looked at in parallel before what they show is kept once: fewer where much is around them.
+pub fn some(topology: &Topology, parts: &[Part]) -> usize {
+    let most = parts.len();
     let near = |count: usize, is_hub: bool| if is_hub { count.min(NEAR) } else { count };
     let faces = |vertex: u32| {
         near(
@@ -134,7 +135,7 @@ pub fn some(topology: &Topology, parts: &[Part], most: usize) -> usize {
         face => near(face.len(), topology.hub_of(part.face).is_some()),
     };
     let mut total = 0;
-    let fit = parts.iter().take(most).take_while(|part| {
+    let fit = parts.iter().take_while(|part| {
         let before = total;
         total += around(part);
         before < 16 * most

@@ -46,9 +46,9 @@ pub struct Irregular<'a> {
 }
 
 /// Appends a ring and its order, see [`Irregulars`].
-pub fn push_ring(controls: &mut Vec<u32>, vertices: &[u32], order: impl Iterator<Item = u16>) {
+pub fn push_ring<T: Copy + Into<u32>>(controls: &mut Vec<u32>, vertices: &[u32], order: &[T]) {
     controls.extend_from_slice(vertices);
-    places::push(controls, vertices.len(), order.map(u32::from));
+    places::push(controls, vertices.len(), order);
 }
 
 /// The order of a ring's places, see [`Irregulars`].
@@ -72,6 +72,11 @@ impl<'a> Irregulars<'a> {
             vertices,
             order,
         }
+    }
+
+    /// The corner of its quad at which patch `number` begins, as one that [`Irregulars::of_face`] tells.
+    pub fn turn(&self, number: u32) -> u32 {
+        self.records[number as usize].start.into()
     }
 
     /// The patch of a face that is a quad with a short ring: one of which each invocation of the control shader can have a vertex.

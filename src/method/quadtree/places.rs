@@ -17,14 +17,13 @@ pub fn words(ring: usize, count: usize) -> usize {
 }
 
 /// Appends a list of places in a ring of this size.
-pub fn push(words: &mut impl Extend<u32>, ring: usize, places: impl IntoIterator<Item = u32>) {
+pub fn push<T: Copy + Into<u32>>(words: &mut impl Extend<u32>, ring: usize, places: &[T]) {
     let bits = bits(ring);
-    let mut places = places.into_iter();
-    words.extend(std::iter::from_fn(|| {
-        let first = places.next()?;
-        let rest = (1..32 / bits).zip(places.by_ref());
-        Some(rest.fold(first, |word, (i, place)| word | place << (bits * i)))
-    }));
+    let packed = |places: &[T]| {
+        let places = places.iter().rev();
+        places.fold(0, |word, &place| word << bits | place.into())
+    };
+    words.extend(places.chunks((32 / bits) as usize).map(packed));
 }
 
 /// Place `i` of the list that begins with `words`.
@@ -43,7 +42,7 @@ mod tests {
         for (ring, count, expected) in [(32, 32, 6), (33, 33, 17), (7, 6, 1), (7, 7, 2)] {
             let places: Vec<u32> = (0..count).map(|i| (i * 7) % ring).collect();
             let mut packed = Vec::new();
-            push(&mut packed, ring as usize, places.iter().copied());
+            push(&mut packed, ring as usize, &places);
             assert_eq!(packed.len(), expected);
             assert_eq!(words(ring as usize, places.len()), expected);
             let read = (0..places.len()).map(|i| place_at(ring as usize, &packed, i));

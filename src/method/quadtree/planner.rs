@@ -3,8 +3,6 @@
 //! A patch keeps its slot, which is its number in its pass, as long as its face is drawn with the same shaders. What leaves a slot leaves it vacant, for whoever
 //! comes next. Plans and borders only ever grow ([`Planned`]); numbers of control vertices that nobody uses any more are taken again.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -40,8 +38,6 @@ const FEW: usize = 1 << 6;
 pub struct Planner {
     options: PlanOptions,
     planned: [Planned; 2],
-    /// The mesh's topology where it has hubs, with these.
-    hubbed: Option<Arc<Topology>>,
     /// By face, see [`Irregulars::of_faces`].
     of_faces: Vec<u32>,
     /// By edge, see [`Given::agreed`].
@@ -55,16 +51,14 @@ pub struct Planner {
     spares: bool,
     /// Whether plans and borders are kept for edits.
     keeps: bool,
-    /// Memory for the numbers of control vertices of one patch after another.
-    controls: Vec<u32>,
 }
 
 /// What is to be planned.
-pub struct Wanted<'a> {
-    /// The faces that may have changed; all of them at first.
-    pub faces: &'a [u32],
+pub struct Wanted<'a, Parts: Iterator<Item = Part>> {
+    /// The faces that may have changed; None of all, at first.
+    pub faces: Option<&'a [u32]>,
     /// The parts of those that are drawn.
-    pub parts: &'a [Part],
+    pub parts: Parts,
     /// The ptex faces that are not drawn any more.
     pub gone: &'a [u32],
 }
@@ -80,10 +74,9 @@ const VACANT: abi::Patch = abi::Patch {
 
 impl Planner {
     /// One that keeps what edits need, or that gives it all to the passes in the end.
-    pub fn new(options: PlanOptions, keeps: bool, hubbed: Option<Topology>) -> Planner {
+    pub fn new(options: PlanOptions, keeps: bool) -> Planner {
         Planner {
             options,
-            hubbed: hubbed.map(Arc::new),
             planned: Default::default(),
             of_faces: Vec::new(),
             agreed: Vec::new(),
@@ -92,7 +85,6 @@ impl Planner {
             free: Default::default(),
             spares: false,
             keeps,
-            controls: Vec::new(),
         }
     }
 
@@ -105,7 +97,8 @@ impl Planner {
     pub fn spare(&mut self, passes: &mut [Pass]) {
         self.spares = true;
         for (number, pass) in passes.iter_mut().enumerate() {
-            self.extend(number, pass);
+            let first = self.extend(number, pass);
+            self.vacant[number].push(first);
         }
     }
 
@@ -123,7 +116,8 @@ impl Planner {
         self.agreed = agreed;
     }
 
-    /// Plans faces. The passes are left as they were where that fails, and the planner is of no use then.
+    /// Plans faces, on the topology of what is smooth: the model's, perhaps with hubs. The passes are left as they were where that fails, and the planner is
+    /// of no use then.
     ///
     /// # Errors
     /// As [`Store::plans`](super::store::Store::plans) and [`Borders::find`](super::border::Borders::find).
@@ -131,13 +125,14 @@ impl Planner {
         &mut self,
         passes: &mut [Pass],
         model: &Model,
-        wanted: &Wanted<'_>,
+        smooth: &SmoothQuads<'_>,
+        wanted: Wanted<'_, impl Iterator<Item = Part>>,
         database: &Database,
     ) -> Result<Vec<PassChange>> {
         let mut log = Log::default();
         let ends: Vec<usize> = passes.iter().map(|pass| pass.controls.len()).collect();
         let slots: Vec<usize> = passes.iter().map(|pass| pass.patches.len()).collect();
-        if let Err(error) = self.try_plan(passes, model, wanted, database, &mut log) {
+        if let Err(error) = self.try_plan(passes, model, smooth, wanted, database, &mut log) {
             log.take_back(passes, &slots);
             return Err(error);
         }
@@ -161,13 +156,12 @@ impl Planner {
         &mut self,
         passes: &mut [Pass],
         model: &Model,
-        wanted: &Wanted<'_>,
+        smooth: &SmoothQuads<'_>,
+        wanted: Wanted<'_, impl Iterator<Item = Part>>,
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let hubbed = self.hubbed.clone();
-        let topology = hubbed.as_deref().unwrap_or(model.topology());
-        let smooth = SmoothQuads::new(topology);
+        let topology = smooth.topology();
         self.of_faces.resize(topology.face_count(), NONE);
         self.agreed.resize(topology.edge_count(), false);
         self.places.resize(model.mesh().ptex_count(), None);
@@ -175,35 +169,32 @@ impl Planner {
             self.leave(passes, ptex, log);
         }
         let mut runs: [Run; 2] = Default::default();
-        let mut all = Vec::with_capacity(AT_A_TIME.min(wanted.parts.len()));
-        // Some parts are few enough whatever is around them.
-        let crowded = wanted.parts.len() > FEW && bounded::is_crowded(topology);
+        let (mut parts, mut all) = (Vec::new(), Vec::new());
         let mut rest = wanted.parts;
-        while !rest.is_empty() {
-            let parts;
-            (parts, rest) = rest.split_at(match crowded {
-                true => bounded::some(topology, rest, AT_A_TIME),
-                false => AT_A_TIME.min(rest.len()),
-            });
-            let found = parts.par_iter();
-            let found = found.map(|&part| found_at(model, topology, &smooth, part));
+        // Some parts are few enough whatever is around them.
+        let mut crowded = None;
+        loop {
+            parts.extend(rest.by_ref().take(AT_A_TIME - parts.len()));
+            if parts.is_empty() {
+                break;
+            }
+            let crowded =
+                parts.len() > FEW && *crowded.get_or_insert_with(|| bounded::is_crowded(topology));
+            let count = match crowded {
+                true => bounded::some(topology, &parts),
+                false => parts.len(),
+            };
+            let found = parts[..count].par_iter();
+            let found = found.map(|&part| found_at(model, topology, smooth, part));
             found.collect_into_vec(&mut all);
-            for (&part, found) in parts.iter().zip(all.drain(..)) {
+            for (&part, found) in parts.iter().zip(&mut all) {
                 self.place(passes, topology, part, found, &mut runs, log);
             }
+            parts.drain(..count);
         }
         drop(all);
         for (number, run) in runs.into_iter().enumerate() {
-            self.plan_run(
-                number,
-                passes,
-                topology,
-                &smooth,
-                wanted.faces,
-                run,
-                database,
-                log,
-            )?;
+            self.plan_run(number, passes, smooth, wanted.faces, run, database, log)?;
         }
         Ok(())
     }
@@ -214,16 +205,16 @@ impl Planner {
         passes: &mut [Pass],
         topology: &Topology,
         part: Part,
-        found: Found,
+        found: &mut Found,
         runs: &mut [Run; 2],
         log: &mut Log,
     ) {
         let Found {
-            mut patch,
+            patch,
             texture,
             surroundings,
         } = found;
-        let number = match &surroundings {
+        let number = match surroundings {
             Surroundings::Regular(_) => REGULAR,
             Surroundings::Irregular(ring)
                 if ring.vertices.len() > abi::CONTROL_INVOCATIONS as usize =>
@@ -234,26 +225,23 @@ impl Planner {
         };
         let slot = self.slot(passes, number, part.ptex, log);
         let (place, pass) = (slot as usize, &mut passes[number]);
-        let mut controls = std::mem::take(&mut self.controls);
-        controls.clear();
-        match &surroundings {
-            Surroundings::Regular(vertices) => controls.extend_from_slice(vertices),
+        let first = pass.controls.len();
+        match surroundings {
+            Surroundings::Regular(vertices) => pass.controls.extend_from_slice(vertices),
             Surroundings::Smooth(_, ring) => {
-                let order = ring.order().iter().copied().map(u16::from);
-                push_ring(&mut controls, ring.vertices(), order);
+                push_ring(&mut pass.controls, ring.vertices(), ring.order());
             }
             Surroundings::Irregular(ring) => {
                 let vertices = &ring.vertices;
-                push_ring(&mut controls, vertices, order(vertices).into_iter());
+                push_ring(&mut pass.controls, vertices, &order(vertices));
             }
         }
-        patch.controls = self.keep(number, pass, &controls, log);
-        self.controls = controls;
+        patch.controls = self.keep(number, pass, first, log);
         if let Some(own) = pass.sides.get_mut(place) {
-            *own = sides(topology, part, &patch);
+            *own = sides(topology, part, patch);
         }
-        pass.patches[place] = patch;
-        pass.texture[place] = texture;
+        pass.patches[place] = *patch;
+        pass.texture[place] = *texture;
         if number == REGULAR {
             return;
         }
@@ -271,14 +259,13 @@ impl Planner {
         &mut self,
         number: usize,
         passes: &mut [Pass],
-        topology: &Topology,
         smooth: &SmoothQuads<'_>,
-        faces: &[u32],
+        faces: Option<&[u32]>,
         run: Run,
         database: &Database,
         log: &mut Log,
     ) -> Result<()> {
-        let pass_number = SHORT + number;
+        let (pass_number, topology) = (SHORT + number, smooth.topology());
         let Run {
             mut slots,
             configurations,
@@ -341,11 +328,8 @@ impl Planner {
             Some(_) => self.leave(passes, ptex, log),
             None => {}
         }
-        if self.vacant[number].is_empty() {
-            self.extend(number, &mut passes[number]);
-        }
         let slot = self.vacant[number].pop();
-        let slot = slot.expect("a pass was just made longer");
+        let slot = slot.unwrap_or_else(|| self.extend(number, &mut passes[number]));
         let place = Place::new(number, slot);
         self.places[ptex as usize] = Some(place);
         if self.spares {
@@ -389,35 +373,39 @@ impl Planner {
         log.remember(&passes[place.pass()], place);
     }
 
-    /// Where numbers of control vertices are kept: where there were as many that nobody uses, or at the end.
-    fn keep(&mut self, number: usize, pass: &mut Pass, controls: &[u32], log: &mut Log) -> u32 {
-        let count = controls.len() as u32;
+    /// Where numbers of control vertices are kept that were just appended: where there were as many that nobody uses, or there at the end.
+    fn keep(&mut self, number: usize, pass: &mut Pass, first: usize, log: &mut Log) -> u32 {
+        let count = (pass.controls.len() - first) as u32;
         let free = self.free[number].get_mut(&count).and_then(Vec::pop);
         let Some(start) = free else {
-            pass.controls.extend_from_slice(controls);
-            return pass.controls.len() as u32 - count;
+            return first as u32;
         };
-        pass.controls[start as usize..][..controls.len()].copy_from_slice(controls);
+        pass.controls.copy_within(first.., start as usize);
+        pass.controls.truncate(first);
         log.written[number].push(start..start + count);
         start
     }
 
-    /// Makes a pass longer by a slot, or, once there are slots to spare, by an eighth and some.
-    fn extend(&mut self, number: usize, pass: &mut Pass) {
+    /// Makes a pass longer by a slot, or, once there are slots to spare, by an eighth and some; returns the first, and leaves the others vacant.
+    fn extend(&mut self, number: usize, pass: &mut Pass) -> u32 {
         let first = pass.patches.len();
-        let count = if self.spares { first / 8 + 64 } else { 1 };
-        let end = first + count;
+        let records = number.checked_sub(SHORT);
+        let records = records.map(|number| &mut self.planned[number].records);
+        if !self.spares {
+            pass.patches.push(VACANT);
+            pass.texture.push(Default::default());
+            records.into_iter().for_each(|all| all.push(Record::VACANT));
+            return first as u32;
+        }
+        let end = first + first / 8 + 64;
         pass.patches.resize(end, VACANT);
         pass.texture.resize(end, Default::default());
-        if self.spares {
-            pass.sides.resize(end, [0; 4]);
-        }
-        if number > REGULAR {
-            let records = &mut self.planned[number - SHORT].records;
-            records.resize(end, Record::VACANT);
-        }
-        // The first is taken first.
-        self.vacant[number].extend((first as u32..end as u32).rev());
+        pass.sides.resize(end, [0; 4]);
+        let records = records.into_iter();
+        records.for_each(|all| all.resize(end, Record::VACANT));
+        // The first of the rest is taken first.
+        self.vacant[number].extend((first as u32 + 1..end as u32).rev());
+        first as u32
     }
 
     /// Brings the passes up to their plans and borders; tables only where there will be edits.

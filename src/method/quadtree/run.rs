@@ -20,12 +20,12 @@ pub struct Run {
 }
 
 impl Run {
-    /// What a patch is; its plan is the number of its configuration in the run.
+    /// What a patch is; its plan is the number of its configuration in the run, which is taken.
     pub fn record(
         &mut self,
         topology: &Topology,
         part: Part,
-        surroundings: Surroundings,
+        surroundings: &mut Surroundings,
     ) -> Record {
         let mut number = |configuration| self.configurations.number(Kind::Inside, configuration);
         match surroundings {
@@ -46,7 +46,7 @@ impl Run {
             }
             Surroundings::Irregular(ring) => Record {
                 part,
-                plan: number(ring.configuration),
+                plan: number(std::mem::take(&mut ring.configuration)),
                 ring_size: ring.vertices.len() as u32,
                 start: ring.start as u8,
                 mirrored: ring.mirrored,

@@ -130,35 +130,53 @@ pub struct Known {
 /// Longer rings are found anew where they are needed.
 pub const LONG: usize = 1 << 8;
 
+/// Subjects of one kind, each once.
+pub struct Subjects<S> {
+    all: Vec<S>,
+    /// Of each subject, by its number, where it stands there.
+    places: Vec<u32>,
+}
+
+impl<S: Subject> Subjects<S> {
+    /// None.
+    pub fn new() -> Subjects<S> {
+        Subjects {
+            all: Vec::new(),
+            places: Vec::new(),
+        }
+    }
+
+    /// Adds one, unless it is there.
+    pub fn add(&mut self, topology: &Topology, subject: S) {
+        let number = subject.number(topology);
+        if number >= self.places.len() {
+            let size = (number + 1).next_power_of_two();
+            self.places.resize(size, NONE);
+        }
+        if self.places[number] == NONE {
+            self.places[number] = self.all.len() as u32;
+            self.all.push(subject);
+        }
+    }
+}
+
 /// The rings and plans of subjects of one kind.
 pub struct Shared {
     known: Vec<Known>,
-    /// Of each subject, by its number, where it stands there.
+    /// As in [`Subjects`].
     places: Vec<u32>,
 }
 
 impl Shared {
     pub fn new<S: Subject>(
-        topology: &Topology,
         smooth: &SmoothQuads<'_>,
-        subjects: impl Iterator<Item = S>,
+        subjects: Subjects<S>,
         store: &mut Store,
         options: PlanOptions,
         database: &Database,
     ) -> Result<Shared> {
-        let mut places: Vec<u32> = Vec::new();
-        let mut all: Vec<S> = Vec::new();
-        for subject in subjects {
-            let number = subject.number(topology);
-            if number >= places.len() {
-                let size = (number + 1).next_power_of_two();
-                places.resize(size, NONE);
-            }
-            if places[number] == NONE {
-                places[number] = all.len() as u32;
-                all.push(subject);
-            }
-        }
+        let topology = smooth.topology();
+        let Subjects { all, places } = subjects;
         let looks: Vec<Option<u32>> = all
             .par_iter()
             .map(|subject| subject.looks(smooth))

@@ -32,7 +32,7 @@ pub fn found(model: &Model, topology: &Topology, smooth: &SmoothQuads<'_>, part:
     };
     let mut patch = patches::patch(model, part, turn);
     patch.flags |= match &surroundings {
-        Surroundings::Regular(_) => turned_corners(topology, smooth, part.face, 0),
+        Surroundings::Regular(_) => turned_corners(smooth, part.face, 0),
         Surroundings::Smooth(start, ring) => ring_flags(ring.vertices(), start.mirrored),
         Surroundings::Irregular(ring) => ring_flags(&ring.vertices, ring.mirrored),
     };

@@ -272,6 +272,8 @@ const uint HULL_SPLINE = 2147483648u;
 const uint HULL_DYNAMIC = 1073741824u;
 // There: it is drawn at that depth alone.
 const uint HULL_SHALLOW = 536870912u;
+// There: it is of a macro face, and the rest is where its list stands, as for sides: how many vertices are its faces', and how many bound it; then these, its faces' first.
+const uint HULL_LISTED = 268435456u;
 // How often is refined around what is irregular at least, by methods that go as deep as a frame needs.
 const uint LEAST_DEPTH = 1u;
 // And at most.

@@ -87,12 +87,12 @@ bool is_all_outside(uint seen, uint eyes) {
 
 // Why a patch is not drawn in any of the views that are drawn together, whatever its levels; 0 where it is.
 uint culled_by(Patch record, PatchSides sides, bool all_outside, uint seen, uint eyes) {
-    uint hull = sides.hull & ~(HULL_SPLINE | HULL_DYNAMIC | HULL_SHALLOW);
-    bool outside = (decision.flags & DECIDE_FRUSTUM) != 0u && hull > 0u;
-    bool small = (decision.flags & DECIDE_SMALL) != 0u && hull > 0u;
-    for (uint eye = 0u; eye < eyes && outside && !all_outside; ++eye) outside = is_outside(record, sides, hull, seen + eye);
+    Hull hull = hull_of(record, sides);
+    bool outside = (decision.flags & DECIDE_FRUSTUM) != 0u && hull.count > 0u;
+    bool small = (decision.flags & DECIDE_SMALL) != 0u && hull.count > 0u;
+    for (uint eye = 0u; eye < eyes && outside && !all_outside; ++eye) outside = is_outside(sides, hull, seen + eye);
     if (outside) return DECIDE_FRUSTUM;
-    for (uint eye = 0u; eye < eyes && small; ++eye) small = is_small(record, hull, seen + eye);
+    for (uint eye = 0u; eye < eyes && small; ++eye) small = is_small(hull, seen + eye);
     return small ? DECIDE_SMALL : 0u;
 }
 

@@ -9,7 +9,7 @@ use std::process::Command;
 use common::cli::{has_device, run};
 
 /// A page, and the case that shows its fault.
-const PAGES: [(&str, &str); 6] = [
+const PAGES: [(&str, &str); 7] = [
     (
         "vertices_per_batch",
         "scale.vertices_per_batch.draw-16_patches-level_64-1_points",
@@ -30,6 +30,10 @@ const PAGES: [(&str, &str); 6] = [
     (
         "query_without_pipeline",
         "statistics.begun.constants_pushed",
+    ),
+    (
+        "culled_before_rounding",
+        "winding.slivers.cull_back-beside_clipped",
     ),
 ];
 

@@ -2,6 +2,7 @@
 #ifndef CULLING_GLSL
 #define CULLING_GLSL
 
+#include "lib/cells.glsl"
 #include "lib/deciding.glsl"
 
 // The share of a limit that vertices have which are not the face's own.
@@ -13,8 +14,24 @@ const float EDGEWISE = 0.02;
 // Pixels.
 const float BETWEEN = 1.0 / 16.0;
 
-// Vertex i of those that bound a patch.
-vec3 hull_point(Patch record, uint i) { return positions[words[bases.controls + record.controls + i]]; }
+// What bounds a patch.
+struct Hull {
+    // Where the numbers of its control vertices stand, among the words.
+    uint first;
+    uint count;
+    // How many of them, the first, are its faces' own; 0 where its sides tell.
+    uint own;
+};
+
+Hull hull_of(Patch record, PatchSides sides) {
+    uint rest = sides.hull & ~(HULL_SPLINE | HULL_DYNAMIC | HULL_SHALLOW | HULL_LISTED);
+    if ((sides.hull & HULL_LISTED) == 0u) return Hull(bases.controls + record.controls, rest, 0u);
+    uint place = side_list(rest);
+    return Hull(place + 2u, words[place + 1u], words[place]);
+}
+
+// Vertex i of it.
+vec3 hull_point(Hull hull, uint i) { return positions[words[hull.first + i]]; }
 
 // How far within a plane a point may be, in the plane's own units.
 float inside_of(vec4 plane, vec4 depth, float reach, vec3 point) {
@@ -23,10 +40,11 @@ float inside_of(vec4 plane, vec4 depth, float reach, vec3 point) {
     return before(plane, point) + reach + rounding + BESIDE * abs(before(depth, point));
 }
 
-// The greatest of these of a patch's own vertices: those of the edges, or faces, that its edges belong to.
-float own_inside(PatchSides sides, vec4 plane, vec4 depth, float reach) {
+// The greatest of these of a patch's own vertices: those of the edges, or faces, that its edges belong to; of a macro face those of its faces.
+float own_inside(PatchSides sides, Hull hull, vec4 plane, vec4 depth, float reach) {
     float greatest = -3.4e38;
-    for (uint side = 0u; side < 4u; ++side) {
+    for (uint i = 0u; i < hull.own; ++i) greatest = max(greatest, inside_of(plane, depth, reach, hull_point(hull, i)));
+    for (uint side = 0u; side < (hull.own > 0u ? 0u : 4u); ++side) {
         uint place = side_list(sides.sides[side]);
         uint count = words[place];
         for (uint i = 1u; i <= count; ++i) {
@@ -44,24 +62,24 @@ vec4 side_of(mat4 clip, uint side) {
 }
 
 // Whether a patch is outside of one side of the picture.
-bool is_outside(Patch record, PatchSides sides, uint hull, uint seen) {
+bool is_outside(PatchSides sides, Hull hull, uint seen) {
     mat4 clip = views[seen].clip_from_model;
     vec4 depth = row_of(clip, 3u);
     float height = abs(views[seen].displacement.x);
     for (uint side = 0u; side < 6u; ++side) {
         vec4 plane = side_of(clip, side);
         float reach = height * sqrt(squared(plane.xyz));
-        float own = own_inside(sides, plane, depth, reach);
-        uint count = own < 0.0 ? hull : 0u;
+        float own = own_inside(sides, hull, plane, depth, reach);
+        uint count = own < 0.0 ? hull.count : 0u;
         float all = own;
-        for (uint i = 0u; i < count; ++i) all = max(all, inside_of(plane, depth, reach, hull_point(record, i)));
+        for (uint i = 0u; i < count; ++i) all = max(all, inside_of(plane, depth, reach, hull_point(hull, i)));
         if (own < 0.0 && own + FOREIGN * (all - own) < 0.0) return true;
     }
     return false;
 }
 
 // Whether no sample is in the box around the picture of a patch.
-bool is_small(Patch record, uint hull, uint seen) {
+bool is_small(Hull hull, uint seen) {
     float rows = float(decision.flags >> DECIDE_ROWS_SHIFT & 15u);
     mat4 clip = views[seen].clip_from_model;
     vec4 depth = row_of(clip, 3u);
@@ -73,8 +91,8 @@ bool is_small(Patch record, uint hull, uint seen) {
         float low = 3.4e38;
         float high = -3.4e38;
         bool before_eye = true;
-        for (uint i = 0u; i < hull; ++i) {
-            vec3 point = hull_point(record, i);
+        for (uint i = 0u; i < hull.count; ++i) {
+            vec3 point = hull_point(hull, i);
             float at = before(row, point);
             float w = before(depth, point);
             // What is no number is nowhere.
@@ -157,10 +175,7 @@ void make_bezier(inout vec3 points[16]) {
 }
 
 // Whether all triangles of a bicubic B-spline patch with these levels show their backs.
-bool is_back(Patch record, uint seen, vec4 edges, float inside) {
-    if (views[seen].displacement.x != 0.0) return false;
-    vec3 points[16];
-    for (uint i = 0u; i < 16u; ++i) points[i] = hull_point(record, i);
+bool is_spline_back(vec3 points[16], uint seen, vec4 edges, float inside) {
     make_bezier(points);
     vec2 slants = vec2(0.0);
     if (edges != vec4(inside)) {
@@ -190,6 +205,27 @@ bool is_back(Patch record, uint seen, vec4 edges, float inside) {
         vec3 to_eye = eye.xyz - eye.w * points[i];
         // What is no number is not below either.
         back = back && dot(normal, to_eye) < -spread * sine * sqrt(squared(to_eye));
+    }
+    return back;
+}
+
+// Whether each triangle of a macro face with these levels is within one of its cells.
+bool are_within_cells(uvec2 cells, vec4 edges, float inside) {
+    return edges == vec4(inside) && (inside >= 2.0 || all(greaterThan(cells, uvec2(1u))));
+}
+
+// Whether all of a patch that is made of bicubic B-splines shows its back: of a macro face all cells, whose control vertices stand behind its header in a grid.
+bool is_back(Patch record, uint seen, vec4 edges, float inside) {
+    if (views[seen].displacement.x != 0.0) return false;
+    bool many = (record.flags & PATCH_MACRO) != 0u;
+    uvec2 cells = many ? cells_of(record) : uvec2(1u);
+    uint grid = bases.controls + record.controls + (many ? MACRO_HEADER : 0u);
+    bool back = !many || are_within_cells(cells, edges, inside);
+    for (uint cell = 0u; cell < cells.x * cells.y && back; ++cell) {
+        uint first = grid + cell % cells.x + (cells.x + 3u) * (cell / cells.x);
+        vec3 points[16];
+        for (uint i = 0u; i < 16u; ++i) points[i] = positions[words[first + (i & 3u) + (cells.x + 3u) * (i >> 2u)]];
+        back = is_spline_back(points, seen, edges, inside);
     }
     return back;
 }

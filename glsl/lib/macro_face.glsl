@@ -2,12 +2,8 @@
 #ifndef MACRO_FACE_GLSL
 #define MACRO_FACE_GLSL
 
+#include "lib/cells.glsl"
 #include "lib/interface.glsl"
-
-// Columns and rows.
-uvec2 cells_of(Patch record) {
-    return (uvec2(record.flags >> MACRO_COLUMNS_SHIFT, record.flags >> MACRO_ROWS_SHIFT) & 31u) + 1u;
-}
 
 // The slot of the first cell, whose patches stand there one after another.
 uint first_cell(Patch record) { return control_at(record.controls); }

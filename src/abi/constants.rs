@@ -279,6 +279,8 @@ constants! {
     HULL_DYNAMIC = 0x4000_0000;
     /// There: it is drawn at that depth alone.
     HULL_SHALLOW = 0x2000_0000;
+    /// There: it is of a macro face, and the rest is where its list stands, as for sides: how many vertices are its faces', and how many bound it; then these, its faces' first.
+    HULL_LISTED = 0x1000_0000;
     /// How often is refined around what is irregular at least, by methods that go as deep as a frame needs.
     LEAST_DEPTH = 1;
     /// And at most.

@@ -30,3 +30,8 @@ pub mod loop_exits {
 pub mod query_without_pipeline {
     #![doc = include_str!("bugs/query_without_pipeline.md")]
 }
+
+/// Triangles are culled by the side that they show before their corners are rounded.
+pub mod culled_before_rounding {
+    #![doc = include_str!("bugs/culled_before_rounding.md")]
+}

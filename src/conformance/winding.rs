@@ -136,6 +136,64 @@ fn seen(context: &Context, view: View) -> Result<Finding> {
     Ok(check.finish(format!("{fronts} pixels of fronts, {backs} of backs")))
 }
 
+/// So many slivers, a row of pixels each, and below them a triangle that may reach out of the picture.
+const SLIVERS: u32 = 56;
+
+/// A triangle along a row of pixels, some hundredths of a pixel high, whose middle is nearly on the line between its ends: rounded to what rasterisers tell apart, some
+/// show their other side. Each second one is the mirror image of the one before. In clip space.
+fn sliver(row: u32) -> [[f32; 2]; 3] {
+    // Each within a 64th of a pixel.
+    let side = if row.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let spread = |step: f64| side * (2.0 * (f64::from(row / 2 + 1) * step).fract() - 1.0) / 64.0;
+    let [begin, end, away] = [0.732_051, 0.618_034, 0.414_214].map(spread);
+    let at = |x: f64, off: f64| {
+        let [x, y] = [x, f64::from(row) + 0.5 + off].map(|t| 2.0 * t / f64::from(SIDE) - 1.0);
+        [x as f32, y as f32]
+    };
+    let middle = at(25.5, (begin + end) / 2.0 + away / 4.0);
+    [at(10.5, begin), at(40.5, end), middle]
+}
+
+/// Facings of pixels where slivers are drawn in one draw with another triangle, that is clipped if so, and what culling leaves.
+fn culled_slivers(context: &Context, cull: vk::CullModeFlags, is_clipped: bool) -> Result<Finding> {
+    let left = if is_clipped { -9.0 } else { -0.9 };
+    let beside = [[left, 0.9], [0.9, 0.9], [0.9, 0.98]];
+    let corners: Vec<[f32; 2]> = (0..SLIVERS).flat_map(sliver).chain(beside).collect();
+    let sizes = [size_of_val(&corners[..]) as u64];
+    let mut raw = Raw::new(context.device()?, &sizes, SIDE)?;
+    raw.write(0, &corners)?;
+    let mut drawn = |cull| {
+        let pipeline = raw.pipeline(&Program {
+            fragment: module("facing.frag")?,
+            raster: Raster::Culled(cull, vk::FrontFace::COUNTER_CLOCKWISE),
+            ..Program::new(module("corners.tesc")?, module("corners.tese")?)?
+        })?;
+        raw.submit(None, |cmd| {
+            cmd.bind(pipeline, &0u32);
+            cmd.draw(SLIVERS + 1, 1, 0, 0);
+        })?;
+        Ok(raw.pixels())
+    };
+    let (all, left) = (drawn(vk::CullModeFlags::NONE)?, drawn(cull)?);
+    context.saw(u64::from(SLIVERS) + 1);
+    let is_back = (cull == vk::CullModeFlags::BACK) != context.is_wrong();
+    let culled = if is_back { BACK } else { FRONT };
+    let mut check = Check::default();
+    for (pixel, (&all, &left)) in all.iter().zip(&left).enumerate() {
+        let right = if all == culled { 0 } else { all };
+        check.hold(left == right, || {
+            let [x, y] = [pixel as u32 % SIDE, pixel as u32 / SIDE];
+            format!("pixel {x}, {y} is {left} instead of {right}: 1 for a front, 2 for a back")
+        });
+    }
+    let count = |side| all.iter().filter(|&&pixel| pixel == side).count();
+    Ok(check.finish(format!(
+        "{} pixels of fronts, {} of backs",
+        count(FRONT),
+        count(BACK)
+    )))
+}
+
 const SOURCE: &str = "Vulkan, Tessellator, and Basic Polygon Rasterization";
 
 fn cases() -> Vec<Case> {
@@ -186,6 +244,17 @@ fn cases() -> Vec<Case> {
                 cases.push(case("triangles", &name, view));
             }
         }
+    }
+    for ((cull, cull_name), is_clipped) in CULLS[1..3]
+        .iter()
+        .flat_map(|&cull| [false, true].map(|is_clipped| (cull, is_clipped)))
+    {
+        let rule = "culling leaves of each triangle what its fragments would be told, whatever else is drawn";
+        let beside = if is_clipped { "clipped" } else { "inside" };
+        let name = format!("winding.slivers.cull_{cull_name}-beside_{beside}");
+        cases.push(Case::new(name, rule, SOURCE, move |context| {
+            culled_slivers(context, cull, is_clipped)
+        }));
     }
     cases
 }

@@ -96,6 +96,14 @@ pub(super) fn is_small(points: &[Vec3], seen: &Seen, size: [f32; 2], rows: f32) 
     })
 }
 
+/// Whether each triangle of a patch with these levels is within one of its cells, so that cells tell by themselves which side it shows. Of macro faces triangles between an edge and
+/// an inside of other levels may be in two; and where one of a single row has one segment across, the tessellator makes two of it, but on the row's ends.
+pub(super) fn are_within_cells(levels: &Levels) -> bool {
+    let is_row = levels.cells.contains(&1);
+    let is_grid = levels.edges == [levels.inside; 4] && (levels.inside >= 2.0 || !is_row);
+    levels.cells == [1; 2] || is_grid
+}
+
 /// Whether all triangles of a bicubic B-spline patch with these levels show their backs.
 ///
 /// From the eye, the null vector of what makes x, y and w in clip space, a triangle shows its back if that is below its plane. Its sides are sums of mean

@@ -3,7 +3,7 @@
 use glam::{BVec3, Mat4, Vec3, Vec4, Vec4Swizzles};
 
 use crate::abi;
-use crate::frame::culling::{Culled, is_back, is_outside, is_small};
+use crate::frame::culling::{Culled, are_within_cells, is_back, is_outside, is_small};
 use crate::frame::{Cut, Seen};
 use crate::method::{Outline, Pass, depth_at};
 #[cfg(feature = "vulkan")]
@@ -23,7 +23,7 @@ pub struct Decision {
     /// within it are drawn as they are.
     pub frustum: bool,
     /// Whether patches are left out that show nothing but their backs, for pipelines that cull these (`gpu::Target::cull`), in a
-    /// viewport whose height is no negative one. By the cone of normals of B-spline patches; all others, and what is displaced, are drawn as they are.
+    /// viewport whose height is no negative one. By the cone of normals of B-spline patches, and of macro faces of such; all others, and what is displaced, are drawn as they are.
     /// Triangles much smaller than a pixel that rounding turns at a silhouette are not seen then.
     pub back: bool,
     /// Whether patches are left out that no sample can be in, for pipelines that fill triangles. By the hull, as beyond the picture.
@@ -142,8 +142,8 @@ impl Decision {
         let sides = pass.sides.get(patch)?;
         let place = |&vertex: &u32| vertices[vertex as usize];
         let points: Vec<Vec3> = pass.hull(patch).iter().map(place).collect();
-        let own = sides.iter().flat_map(|&side| outline.side(side));
-        let own: Vec<Vec3> = own.map(place).collect();
+        let own = pass.own_vertices(outline, patch);
+        let own: Vec<Vec3> = own.iter().map(place).collect();
         if self.frustum && !points.is_empty() && is_outside(&own, &points, seen) {
             return Some(Err(Culled::Frustum));
         }
@@ -155,9 +155,15 @@ impl Decision {
         let level = |&side: &u32| self.level_of_side(outline, side, vertices, cut, seen);
         let edges = sides.each_ref().map(level);
         let levels = levels_of_edges(pass.domain, record, edges, cut.spacing, pass.max_level);
-        let spline = pass.spline(patch).filter(|_| self.back);
-        let points = spline.map(|points| points.each_ref().map(place));
-        if points.is_some_and(|points| is_back(&points, seen, &levels, cut.spacing)) {
+        let splines = match self.back && are_within_cells(&levels) {
+            true => pass.splines(patch),
+            false => Vec::new(),
+        };
+        let is_back = |points: &[u32; 16]| {
+            let points = points.each_ref().map(place);
+            is_back(&points, seen, &levels, cut.spacing)
+        };
+        if !splines.is_empty() && splines.iter().all(is_back) {
             return Some(Err(Culled::Back));
         }
         Some(Ok(levels))

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::abi;
-use crate::method::{Outline, Prepared, Table};
+use crate::method::{Outline, Pass, Prepared, Table};
 
 /// Lists of vertices, each there once.
 struct Lists<'a> {
@@ -28,6 +28,27 @@ impl Lists<'_> {
             first
         })
     }
+
+    /// What bounds a patch. Of a macro face it is a list of its own: how many vertices are its faces', and how many there are; then these.
+    fn hull(&mut self, pass: &Pass, patch: usize) -> u32 {
+        let Some(bounds) = pass.macro_bounds(patch) else {
+            let spline = if pass.is_spline { abi::HULL_SPLINE } else { 0 };
+            return pass.hull(patch).len() as u32 | spline;
+        };
+        let place = self.words.len() as u32;
+        if bounds.vertices.is_empty() || place >= abi::HULL_LISTED {
+            return 0;
+        }
+        self.words
+            .extend([bounds.own as u32, bounds.vertices.len() as u32]);
+        self.words.extend(bounds.vertices);
+        let spline = if bounds.splines.is_empty() {
+            0
+        } else {
+            abi::HULL_SPLINE
+        };
+        place | abi::HULL_LISTED | spline
+    }
 }
 
 /// `PatchSides` of all patches of a pass, the lists of vertices that these point into, where the sides that patches have in common are there once; and, of the
@@ -39,14 +60,13 @@ pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] 
         words: Vec::new(),
         known: FxHashMap::default(),
     };
-    let spline = if pass.is_spline { abi::HULL_SPLINE } else { 0 };
     let records = pass
         .sides
         .iter()
         .enumerate()
         .map(|(patch, sides)| abi::PatchSides {
             sides: sides.map(|side| lists.place(side)),
-            hull: pass.hull(patch).len() as u32 | spline | pass.stage_flags(patch),
+            hull: lists.hull(pass, patch) | pass.stage_flags(patch),
         });
     let records: Vec<abi::PatchSides> = records.collect();
     let ends = match number {

@@ -49,6 +49,7 @@ mod acc;
 mod bft;
 mod bicubic;
 mod blended;
+mod bounds;
 mod cached;
 mod cell;
 mod change;

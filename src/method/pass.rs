@@ -53,6 +53,8 @@ pub struct Pass {
     pub(super) face_at: Option<FaceAt>,
     /// How many control vertices bound a patch; None where they do not, see [`Pass::hull`].
     pub(super) hull: Option<fn(&Pass, usize) -> u32>,
+    /// What bounds a macro face; None where there are none.
+    pub(super) bounds: Option<fn(&Pass, usize) -> Bounds>,
     /// Whether these are the control points of a bicubic B-spline, row by row along u.
     pub(super) is_spline: bool,
     /// When each patch is drawn; empty where all always are.
@@ -69,6 +71,17 @@ pub(super) type TangentsAt = fn(&Pass, &Controls, usize, Vec2, u32) -> [Vec3; 2]
 
 /// The cell at (u, v) of a patch.
 pub(super) type CellAt = fn(&Pass, usize, Vec2) -> Option<Cell>;
+
+/// What bounds a macro face.
+#[derive(Debug, Default)]
+pub(super) struct Bounds {
+    /// The control vertices in whose convex hull it is: those of its faces, and behind them the others. None where that is not known.
+    pub(super) vertices: Vec<u32>,
+    /// How many are its faces'.
+    pub(super) own: usize,
+    /// The control points of its cells, row by row along its own u, where all are bicubic B-splines; else none.
+    pub(super) splines: Vec<[u32; 16]>,
+}
 
 /// The slot of the face that has (u, v) of a macro face, and where in its own patch.
 pub(super) type FaceAt = fn(&Pass, usize, Vec2) -> (usize, Vec2);
@@ -100,6 +113,7 @@ impl Pass {
             cell: None,
             face_at: None,
             hull: None,
+            bounds: None,
             is_spline: false,
             stages: Vec::new(),
             needs: [0; 2],
@@ -211,24 +225,6 @@ impl Pass {
     pub fn is_on_lattice(&self, uv: [f32; 2]) -> bool {
         let segments = (1u32 << self.max_level.saturating_sub(1).min(31)) as f32;
         uv.iter().all(|x| (x * segments).fract() == 0.0)
-    }
-
-    /// The control vertices in whose convex hull the surface of a patch is; none where that is not known, or there is no such patch.
-    pub fn hull(&self, patch: usize) -> &[u32] {
-        let (Some(count), Some(record)) = (self.hull, self.patches.get(patch)) else {
-            return &[];
-        };
-        if self.is_vacant(patch) {
-            return &[];
-        }
-        let first = record.controls as usize;
-        &self.controls[first..first + count(self, patch) as usize]
-    }
-
-    /// The control points of a patch that is a bicubic B-spline, row by row along u; None of others.
-    pub fn spline(&self, patch: usize) -> Option<[u32; 16]> {
-        let points = self.hull(patch);
-        points.try_into().ok().filter(|_| self.is_spline)
     }
 
     /// Whether nothing is drawn of a patch's slot: there is no such slot, or an edit has left it vacant, see [`Editable`](super::Editable).

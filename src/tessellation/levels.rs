@@ -185,7 +185,7 @@ fn halvings(patch: &abi::Patch) -> u32 {
     depth + u32::from(patch.flags & abi::PATCH_HALF != 0)
 }
 
-/// The columns and rows of a macro face; one each of other patches. Twin of `cells_of` in `glsl/lib/macro_face.glsl`.
+/// The columns and rows of a macro face; one each of other patches. Twin of `cells_of` in `glsl/lib/cells.glsl`.
 pub(crate) fn cells(patch: &abi::Patch) -> [u32; 2] {
     match patch.flags & abi::PATCH_MACRO {
         0 => [1; 2],

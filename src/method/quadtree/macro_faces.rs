@@ -17,6 +17,7 @@
 //!
 //! Beside an n-gon a side has the vertices of two halves, at halves of steps. Such a side is one edge, n = 1, and what is divided by 1 is exact as it is.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
@@ -25,6 +26,7 @@ use crate::abi;
 use crate::mesh::Model;
 use crate::mesh::topology::FaceCorner;
 use crate::method::macro_faces::MacroFace;
+use crate::method::pass::Bounds;
 use crate::method::ptex::to_ptex_tangents;
 use crate::method::quadtree::twin;
 use crate::method::regular::regular_surface;
@@ -121,6 +123,7 @@ impl Kind {
         let mut pass = Pass {
             max_level: short.max_level,
             face_at: Some(face_at),
+            bounds: Some(bounds),
             tangents: Some(tangents),
             cell: Some(cell),
             ..Pass::new(shader, Domain::Quads, control_points, point)
@@ -393,6 +396,44 @@ impl CellPlace {
         let steps = Steps::new(w + 3, self.at, self.turn);
         let point = |x, y| given.vertices[grid[steps.place(x, y)] as usize];
         regular_surface(pass.patches[self.slot].flags, self.uv, point)
+    }
+}
+
+/// What bounds a macro face: all that bounds its cells. Rings begin with the vertices of their face.
+fn bounds(pass: &Pass, patch: usize) -> Bounds {
+    let record = &pass.patches[patch];
+    let [w, h] = cells(record);
+    let block = &pass.controls[record.controls as usize..];
+    let grid = &block[abi::MACRO_HEADER as usize..];
+    let (mut own, mut all) = (Vec::new(), Vec::new());
+    let mut splines = Vec::new();
+    for place in 0..w * h {
+        let slot = (block[0] + place) as usize;
+        if has_plan(&pass.patches[slot]) {
+            let first = pass.patches[slot].controls as usize;
+            let ring = &pass.controls[first..first + twin::hull_size(pass, slot) as usize];
+            let Some(corners) = ring.get(..4) else {
+                return Bounds::default();
+            };
+            own.extend_from_slice(corners);
+            all.extend_from_slice(ring);
+            continue;
+        }
+        let steps = Steps::new(w + 3, [place % w, place / w], 0);
+        let spline = std::array::from_fn(|i| grid[steps.place(i % 4, i / 4)]);
+        own.extend([5, 6, 9, 10].map(|i| spline[i]));
+        all.extend_from_slice(&spline);
+        splines.push(spline);
+    }
+    if splines.len() < (w * h) as usize {
+        splines.clear();
+    }
+    let own: BTreeSet<u32> = own.into_iter().collect();
+    let others: BTreeSet<u32> = all.into_iter().filter(|one| !own.contains(one)).collect();
+    Bounds {
+        vertices: own.iter().chain(&others).copied().collect(),
+        own: own.len(),
+        splines,
     }
 }
 

@@ -88,7 +88,7 @@ impl Amends {
                 if hull.iter().any(has_moved) {
                     places
                         .iter()
-                        .for_each(|placed| self.add_lines(hull, placed));
+                        .for_each(|placed| self.add_lines(&hull, placed));
                 }
             }
         }

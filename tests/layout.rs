@@ -39,6 +39,7 @@ fn shared_struct(module: &str, block: Block, shape: &Shape) -> Option<&'static s
         Block::PushConstants if module.starts_with("points.comp") => Some("PointStep"),
         Block::PushConstants if module.starts_with("decide.comp") => Some("Decision"),
         Block::PushConstants if module.starts_with("limits.comp") => Some("Decision"),
+        Block::PushConstants if module.starts_with("compact.comp") => Some("Compaction"),
         Block::PushConstants => Some("Frame"),
         Block::Buffer { binding } => match binding {
             abi::BINDING_TABLES => in_tables(shape),
@@ -86,7 +87,7 @@ fn in_tables(shape: &Shape) -> Option<&'static str> {
 fn plain_stride(binding: u32) -> Option<u32> {
     match binding {
         abi::BINDING_POSITIONS => Some(12),
-        abi::BINDING_COUNTERS | abi::BINDING_INSTANCES => Some(4),
+        abi::BINDING_COUNTERS | abi::BINDING_INSTANCES | abi::BINDING_DRAWS => Some(4),
         abi::BINDING_SCRATCH => Some(16),
         _ => None,
     }

@@ -198,7 +198,7 @@ impl SurfaceOptions {
     }
 
     /// What bounds a batch, with an instance's vertices where the driver bounds those.
-    pub(super) fn bounds(&self, instance_vertices: Option<u32>) -> Bounds {
+    pub(crate) fn bounds(&self, instance_vertices: Option<u32>) -> Bounds {
         let vertices = match self.capture_vertices {
             0 => u32::MAX / 2,
             captured => captured,

@@ -63,7 +63,7 @@ fn whole_levels(record: &abi::SubPatch) -> Option<Levels> {
 
 /// What is drawn of a pass: its patches, or sub-patches.
 #[derive(Clone, Copy)]
-pub(super) struct Drawn<'a> {
+pub(crate) struct Drawn<'a> {
     pub pass: &'a Pass,
     pub cut: Cut,
     /// By patch, where depth tags give them levels.

@@ -11,6 +11,7 @@ mod cache;
 mod cached;
 mod call;
 mod changes;
+mod compact;
 mod decide;
 mod draw;
 pub mod driver;

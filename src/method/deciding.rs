@@ -3,14 +3,18 @@
 use rustc_hash::FxHashMap;
 
 use crate::abi;
-use crate::method::{Outline, Prepared, Table};
+use crate::method::{Outline, Pass, Prepared, Table};
 
 /// Lists of vertices, each there once.
 struct Lists<'a> {
     outline: &'a Outline,
     words: Vec<u32>,
     known: FxHashMap<u32, u32>,
+    needs: FxHashMap<Needs, u32>,
 }
+
+/// The points that a patch needs in the ring, by level.
+type Needs = [u32; abi::HIGHEST_LEVEL as usize + 1];
 
 impl Lists<'_> {
     /// Where the list of a side begins.
@@ -19,6 +23,7 @@ impl Lists<'_> {
             outline,
             words,
             known,
+            ..
         } = self;
         *known.entry(side).or_insert_with(|| {
             let first = words.len() as u32;
@@ -26,6 +31,16 @@ impl Lists<'_> {
             words.push(vertices.len() as u32);
             words.extend_from_slice(vertices);
             first
+        })
+    }
+
+    /// Where it stands how many points a patch needs.
+    fn needs(&mut self, pass: &Pass, patch: usize) -> u32 {
+        let needs: Needs = std::array::from_fn(|level| pass.points(patch, level as u32));
+        let words = &mut self.words;
+        *self.needs.entry(needs).or_insert_with(|| {
+            words.extend(needs);
+            (words.len() - needs.len()) as u32
         })
     }
 }
@@ -38,6 +53,7 @@ pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] 
         outline,
         words: Vec::new(),
         known: FxHashMap::default(),
+        needs: FxHashMap::default(),
     };
     let spline = if pass.is_spline { abi::HULL_SPLINE } else { 0 };
     let records = pass
@@ -47,6 +63,7 @@ pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] 
         .map(|(patch, sides)| abi::PatchSides {
             sides: sides.map(|side| lists.place(side)),
             hull: pass.hull(patch).len() as u32 | spline | pass.stage_flags(patch),
+            needs: lists.needs(pass, patch),
         });
     let records: Vec<abi::PatchSides> = records.collect();
     let ends = match number {

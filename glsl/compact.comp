@@ -31,6 +31,19 @@ shared Needs sums[DECIDE_INVOCATIONS];
 
 Needs joined(Needs a, Needs b) { return Needs(a.drawn + b.drawn, a.points + b.points, max(a.segments, b.segments)); }
 
+// What all of the workgroup have, whoever adds first: in place of the first sum.
+void sum_all(Needs own) {
+    uint number = gl_LocalInvocationIndex;
+    sums[number] = Needs(0u, 0u, 0u);
+    barrier();
+    if (own.drawn != 0u) {
+        atomicAdd(sums[0].drawn, own.drawn);
+        atomicAdd(sums[0].points, own.points);
+        atomicMax(sums[0].segments, own.segments);
+    }
+    barrier();
+}
+
 // What all invocations have up to this one, with its own (Hillis, Steele 1986).
 Needs summed(Needs own) {
     uint number = gl_LocalInvocationIndex;
@@ -90,8 +103,8 @@ Needs patch_needs(uint view, uint number) {
 }
 
 void count(uint view, uint workgroup) {
-    Needs all = summed(patch_needs(view, gl_GlobalInvocationID.x));
-    if (gl_LocalInvocationIndex == DECIDE_INVOCATIONS - 1u) keep_needs(view, workgroup, all);
+    sum_all(patch_needs(view, gl_GlobalInvocationID.x));
+    if (gl_LocalInvocationIndex == 0u) keep_needs(view, workgroup, sums[0]);
 }
 
 // One workgroup a view: what all before each need, and behind them all.

@@ -8,11 +8,15 @@ use bytemuck::Zeroable;
 
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
+use crate::frame::Cut;
 use crate::frame::batches::{Bounds, Run, patches_per_instance};
 use crate::frame::sub_patches::Drawn;
-use crate::frame::{Cut, DrawList};
 use crate::method::{Pass, Prepared};
 use crate::tessellation::{Levels, Spacing, required_level};
+
+/// Drivers that bound the vertices of an instance keep all of them in memory at once, and are the slower the more that is: of as many as llvmpipe takes, a frame took a third
+/// longer than of an eighth.
+const SHARE: u32 = 8;
 
 /// How the patches of a pass are cut into batches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +77,7 @@ impl Compaction {
             batches: most.drawn.div_ceil(patches),
             window: patches,
             slot: Some(most.slot),
-            instance_vertices: bounds.instance_vertices,
+            instance_vertices: bounds.instance_vertices.map(|most| (most / SHARE).max(1)),
         };
         let window = room - most.slot + 1;
         let by_points = Compaction {
@@ -106,7 +110,12 @@ impl Compaction {
     }
 
     /// What a view draws of a pass, by the levels that were decided in it.
-    fn compacted(&self, pass: &Pass, decided: &[abi::PatchDraw], spacing: Spacing) -> Compacted {
+    pub fn compacted(
+        &self,
+        pass: &Pass,
+        decided: &[abi::PatchDraw],
+        spacing: Spacing,
+    ) -> Compacted {
         let mut made = Compacted::default();
         let mut firsts = vec![0];
         let (mut points, mut segments) = (0u32, 0);
@@ -219,26 +228,4 @@ pub(crate) fn most_batches(
         }
     }
     Ok(most)
-}
-
-impl DrawList {
-    /// How batches come about, by pass; none where the host decides.
-    #[cfg(feature = "vulkan")]
-    pub(crate) fn compactions(&self) -> &[Option<Compaction>] {
-        &self.compactions
-    }
-
-    /// What a view draws of a pass of `prepared`, which the list was made for, where a device has decided about its patches so: what it makes of these decisions with
-    /// `cmd_decide`, the first two words and the fourth of batches aside, which commands alone need. None where the host decides, or there is no such pass.
-    pub fn compacted(
-        &self,
-        prepared: &Prepared,
-        pass: usize,
-        decided: &[abi::PatchDraw],
-    ) -> Option<Compacted> {
-        let own = self.compactions.get(pass).copied().flatten()?;
-        let patches = prepared.passes.get(pass)?;
-        let count = decided.len().min(patches.patches.len());
-        Some(own.compacted(patches, &decided[..count], self.cut().spacing))
-    }
 }

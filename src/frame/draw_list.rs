@@ -8,10 +8,10 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
 use crate::frame::compaction::{Compaction, compactions, most_batches};
 use crate::frame::patterns::Patterns;
-use crate::frame::sub_patches::{Drawn, has_sub_patches, join, levels_of, sub_patches};
+use crate::frame::sub_patches::{Drawn, all_sub_patches, has_sub_patches, join, levels_of};
 use crate::frame::tagged::Tagged;
 use crate::frame::{Cut, Decides, Draw, Residence, SurfaceOptions};
-use crate::method::{DepthTags, MacroFaces, Pass, Prepared};
+use crate::method::{DepthTags, MacroFaces, Prepared};
 use crate::tessellation::{Levels, Piece, Spacing};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
@@ -483,19 +483,6 @@ impl<'a> Batch<'a> {
     pub fn draws(&self) -> &'a [Draw] {
         &self.list.draws[self.number]
     }
-}
-
-/// The sub-patches of each pass.
-fn all_sub_patches(
-    prepared: &Prepared,
-    cut: Cut,
-    tagged: Option<&[Vec<Levels>]>,
-) -> Vec<Vec<abi::SubPatch>> {
-    let of_pass = |(number, pass): (usize, &Pass)| {
-        let tagged = tagged.map(|all| all[number].as_slice());
-        sub_patches(pass, |patch| levels_of(pass, cut, tagged, patch))
-    };
-    prepared.passes.iter().enumerate().map(of_pass).collect()
 }
 
 /// # Errors

@@ -7,6 +7,7 @@ mod backend;
 mod batch;
 mod batches;
 mod chosen;
+mod compacted;
 mod compaction;
 mod culling;
 mod cut;

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use crate::abi;
 use crate::frame::Cut;
 use crate::frame::backend::Mould;
-use crate::method::Pass;
+use crate::method::{Pass, Prepared};
 use crate::tessellation::{
     Domain, Levels, Piece, Spacing, TESSELLATED, coordinates, piece_coordinates, triangulate,
 };
@@ -36,6 +36,19 @@ pub(super) fn sub_patches(
         })
     };
     (0..pass.extent()).flat_map(of_patch).collect()
+}
+
+/// The sub-patches of each pass.
+pub(super) fn all_sub_patches(
+    prepared: &Prepared,
+    cut: Cut,
+    tagged: Option<&[Vec<Levels>]>,
+) -> Vec<Vec<abi::SubPatch>> {
+    let of_pass = |(number, pass): (usize, &Pass)| {
+        let tagged = tagged.map(|all| all[number].as_slice());
+        sub_patches(pass, |patch| levels_of(pass, cut, tagged, patch))
+    };
+    prepared.passes.iter().enumerate().map(of_pass).collect()
 }
 
 /// The most sub-patches that a pass has at cuts up to a level, however edits change it.

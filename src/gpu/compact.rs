@@ -5,19 +5,16 @@ use std::ops::Range;
 use ash::vk;
 
 use crate::abi;
-use crate::error::Result;
-use crate::frame::{Batch, Compaction, Decides, Draw, DrawList, SurfaceOptions, most_batches};
+use crate::frame::{Batch, Compaction, Draw, DrawList};
 use crate::gpu::barrier::cmd_make_visible;
 use crate::gpu::draw::Constants;
 use crate::gpu::indirect::MOST_COMMANDS;
+use crate::gpu::lists::Lists;
 use crate::gpu::pipeline::control_points;
 use crate::gpu::sets::STAGES;
 use crate::gpu::{DecidePipeline, Decided, Drawing, FrameSlot, Layout, Pose, Tables};
-use crate::method::{Pass, Prepared};
+use crate::method::Pass;
 use crate::tessellation::Spacing;
-
-/// Batches that edits may make more than there are at first, of each pass.
-const SPARE_BATCHES: u32 = 32;
 
 /// The steps of `compact.comp`, in their order.
 const STEPS: [u32; 4] = [
@@ -27,90 +24,11 @@ const STEPS: [u32; 4] = [
     abi::COMPACT_COMMANDS,
 ];
 
-// The words that shaders find by numbers.
-const _: () = {
-    assert!(size_of::<abi::DrawnBatch>() == 4 * abi::BATCH_WORDS as usize);
-    assert!(std::mem::offset_of!(abi::DrawnBatch, first) == 4 * abi::BATCH_FIRST as usize);
-    assert!(std::mem::offset_of!(abi::DrawnBatch, patches) == 4 * abi::BATCH_PATCHES as usize);
-    let per_instance = std::mem::offset_of!(abi::DrawnBatch, per_instance);
-    assert!(per_instance == 4 * abi::BATCH_PER_INSTANCE as usize);
-};
-
-/// Where what is drawn of a pass stands behind the decisions about its patches, in words: for each view its batches, the list of its patches, and what workgroups
-/// of these need.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lists {
-    /// Batches that there is room for.
-    batches: u32,
-    patches: u32,
-    /// Where they begin.
-    first: u32,
-}
-
-impl Lists {
-    /// Of each pass; none where the host decides.
-    ///
-    /// # Errors
-    /// [`Misuse::RingTooSmall`](crate::Misuse::RingTooSmall).
-    pub fn of_passes(
-        prepared: &Prepared,
-        options: &SurfaceOptions,
-        instance_vertices: Option<u32>,
-    ) -> Result<Vec<Lists>> {
-        if options.decides == Decides::Host {
-            return Ok(Vec::new());
-        }
-        let bounds = options.bounds(instance_vertices);
-        let most = most_batches(prepared, options.greatest_cuts(), bounds)?;
-        let of_pass = |(pass, batches): (&Pass, u32)| {
-            let patches = pass.patches.len() as u32;
-            let words = size_of::<abi::PatchDraw>() as u32 / 4;
-            Lists {
-                batches: batches + SPARE_BATCHES,
-                patches,
-                first: words * patches * options.views,
-            }
-        };
-        Ok(prepared.passes.iter().zip(most).map(of_pass).collect())
-    }
-
-    /// Their bytes for so many views, and what a buffer is used for that has them.
-    pub fn room(&self, views: u64) -> (u64, vk::BufferUsageFlags) {
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER;
-        (4 * views * u64::from(self.view_words()), usage)
-    }
-
-    fn workgroups(&self) -> u32 {
-        self.patches.div_ceil(abi::DECIDE_INVOCATIONS)
-    }
-
-    /// From one view to the next.
-    pub fn view_words(&self) -> u32 {
-        abi::BATCH_WORDS * self.batches + self.patches + 3 * (self.workgroups() + 1)
-    }
-
-    /// How many patches there are.
-    pub fn patches(&self) -> u32 {
-        self.patches
-    }
-
-    /// The place of a batch of a view.
-    pub fn batch(&self, view: u32, batch: u32) -> u32 {
-        self.first + view * self.view_words() + abi::BATCH_WORDS * batch
-    }
-
-    /// The place of a view's list.
-    pub fn list(&self, view: u32) -> u32 {
-        self.batch(view, self.batches)
-    }
-}
-
 impl FrameSlot {
     /// Whether there is room for the batches of a list.
     pub(super) fn has_lists(&self, list: &DrawList) -> bool {
-        let batches = list.compactions().iter().flatten().map(|own| own.batches);
-        let mut room = self.lists().iter().zip(batches);
-        room.all(|(lists, batches)| batches <= lists.batches)
+        let mut room = self.lists().iter().zip(list.compactions());
+        room.all(|(lists, own)| own.is_none_or(|own| lists.has_room(&own)))
     }
 
     /// Records what is drawn of what was decided, and what later draws wait for.
@@ -202,8 +120,8 @@ impl FrameSlot {
         let Some(lists) = self.lists().get(pass) else {
             return &[];
         };
-        let count = lists.patches as usize;
-        let bytes = &self.draws_buffer(pass).bytes()[..4 * lists.first as usize];
+        let count = lists.patches() as usize;
+        let bytes = &self.draws_buffer(pass).bytes()[..4 * lists.batch(0, 0) as usize];
         let records: &[abi::PatchDraw] = bytemuck::cast_slice(bytes);
         records
             .chunks(count.max(1))
@@ -234,7 +152,7 @@ impl FrameSlot {
         let (Some(lists), Some(own)) = (self.lists().get(pass), own) else {
             return (&[], &[]);
         };
-        if view >= self.options().views || own.batches > lists.batches {
+        if view >= self.options().views || !lists.has_room(&own) {
             return (&[], &[]);
         }
         let words: &[u32] = bytemuck::cast_slice(self.draws_buffer(pass).bytes());
@@ -242,7 +160,7 @@ impl FrameSlot {
         let batches = words(lists.batch(view, 0), abi::BATCH_WORDS * own.batches);
         let batches: &[abi::DrawnBatch] = bytemuck::cast_slice(batches);
         let drawn = batches.iter().map(|batch| batch.patches).sum::<u32>();
-        let drawn = words(lists.list(view), drawn.min(lists.patches));
+        let drawn = words(lists.list(view), drawn.min(lists.patches()));
         (batches, drawn)
     }
 }

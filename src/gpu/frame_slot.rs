@@ -12,7 +12,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, Decides, DrawList, Residence, SurfaceOptions};
 use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
-use crate::gpu::compact::Lists;
+use crate::gpu::lists::Lists;
 use crate::gpu::patterns::Patterns;
 use crate::gpu::pipeline::control_points;
 use crate::gpu::ring::RING_ACCESS;

@@ -20,6 +20,7 @@ mod frame_slot;
 mod indirect;
 mod kept_cache;
 mod layout;
+mod lists;
 pub mod memory;
 mod patterns;
 mod pipeline;

@@ -1,20 +1,25 @@
 //! What the device makes of its decisions: lists of what is drawn, batches and slots by real needs, the same as the twin's to the bit, and no more work than that.
 
+use std::ops::Range;
+
 use ash::vk;
 use hullform::abi;
 use hullform::frame::Compacted;
 use hullform::gpu::{
-    Backend, Cut, Decision, DrawList, Fill, FrameSlot, Metric, Residence, Samples, Shading,
-    SurfaceOptions, View,
+    Backend, Cut, DecidePipeline, Decided, Decision, DrawList, Fill, FrameSlot, Layout, Metric,
+    PipelineOptions, Pipelines, Residence, Samples, Shading, SurfaceOptions, Target, View,
 };
-use hullform::host::Shot;
+use hullform::host::{Owned, Shot};
 use hullform::mesh::Model;
 use hullform::method::{METHODS, Prepared};
 use hullform::tessellation::Spacing;
 
+use crate::canvas::{Canvas, Part};
 use crate::common::gpu::{Gpu, Loaded, SIDE, cut, prepare};
 use crate::decide::{options, radius, views};
+use crate::instances::grid;
 use crate::shapes;
+use crate::targets::{COLOURED, ONE, covered, open, single_draws};
 
 /// Holds what a slot has of a view to the twin, by the decisions of the device; what that is, by pass.
 pub fn hold_to_twin(
@@ -164,5 +169,208 @@ fn batches_by_real_needs_are_the_twins_and_the_picture_is_the_same() {
         }
     }
     assert!(left_over > 20 && several > 20, "{left_over} {several}");
+    gpu.finish();
+}
+
+/// A frame that is decided by `decision` in its views, whose eyes go together, and drawn in ranges of them.
+struct Scene<'a> {
+    gpu: &'a Gpu,
+    loaded: Loaded<'a>,
+    list: DrawList,
+    deciding: Owned<DecidePipeline>,
+}
+
+impl<'a> Scene<'a> {
+    fn new(gpu: &'a Gpu, decision: Decision) -> Scene<'a> {
+        let model = shapes::built_in("hull");
+        let options = SurfaceOptions {
+            views: 18,
+            ..options(Residence::Cache)
+        };
+        let mut loaded = load(gpu, &model, options);
+        loaded.decision = decision;
+        let list = loaded.draw_list(cut(6.0, Spacing::Equal)).expect("a cut");
+        let (device, none) = (gpu.device.raw(), vk::PipelineCache::null());
+        // SAFETY: all of one live device.
+        let deciding = unsafe {
+            let made = DecidePipeline::new(device, gpu.layout(), none);
+            Owned::new(
+                &gpu.device,
+                made.expect("the shipped modules make pipelines"),
+            )
+        };
+        Scene {
+            gpu,
+            loaded,
+            list,
+            deciding,
+        }
+    }
+
+    /// Draws the ranges of views between `begin` and `end`, by pipelines for a target.
+    fn draw(
+        &self,
+        layout: &Layout,
+        target: Target<'_>,
+        (views, ranges): (&[View], &[Range<u32>]),
+        begin: impl Fn(vk::CommandBuffer),
+        end: impl Fn(vk::CommandBuffer),
+    ) {
+        let device = self.gpu.device.raw();
+        let options = PipelineOptions {
+            target,
+            backend: Backend::Tessellator,
+            residence: Residence::Cache,
+            spacing: Spacing::Equal,
+            fill: Fill::Solid(Shading::Lit),
+            fragment: None,
+            sub_patches: false,
+            layout: None,
+        };
+        let eyes = target.view_mask.count_ones().max(1);
+        let decided = Decided {
+            views: 0..views.len() as u32,
+            eyes,
+        };
+        let (cache, surface) = (vk::PipelineCache::null(), self.loaded.surface());
+        // SAFETY: all of one live device.
+        let pipelines =
+            unsafe { Pipelines::new(device, layout, cache, surface.prepared(), &options) };
+        let pipelines = pipelines.expect("it can");
+        // SAFETY: recording on the device that made everything, in the order that the calls ask for.
+        let drawn = self.gpu.device.submit(|cmd| unsafe {
+            surface.cmd_prepare(device, cmd, views)?;
+            let (list, decision) = (&self.list, &self.loaded.decision);
+            surface.cmd_decide(
+                device,
+                cmd,
+                layout,
+                &self.deciding,
+                list,
+                decision,
+                &decided,
+            )?;
+            begin(cmd);
+            for batch in list.batches() {
+                for views in ranges {
+                    let drawing = surface.drawing();
+                    drawing.cmd_draw(device, cmd, layout, &pipelines, views.clone(), batch)?;
+                }
+            }
+            end(cmd);
+            surface.cmd_read_back(device, cmd);
+            Ok(())
+        });
+        drawn.expect("it is executed");
+        // SAFETY: every submission has been waited for.
+        unsafe { pipelines.destroy(device) };
+    }
+}
+
+/// Nine views at once or some at a time, in one call or one each where the device has no `multiDrawIndirect`: each draws what was decided for it.
+#[test]
+fn views_are_drawn_together_one_by_one_and_in_any_ranges() {
+    let Some(gpu) = Gpu::open() else { return };
+    let single = single_draws(&gpu);
+    let decision = Decision {
+        metric: Metric::Screen {
+            pixels: 2.0,
+            size: [SIDE as f32 / 3.0; 2],
+        },
+        frustum: true,
+        ..Decision::default()
+    };
+    let scene = Scene::new(&gpu, decision);
+    let mut views = grid(3);
+    // One of which nothing is seen.
+    views[4].clip_from_model[3][0] += 100.0;
+    let all: [&[Range<u32>]; 3] = [&[0..9], &[0..2, 2..7, 7..9], &[5..9, 0..5]];
+    let mut right = Vec::new();
+    for (layout, ranges) in [gpu.layout(), &single]
+        .into_iter()
+        .flat_map(|l| all.map(|r| (l, r)))
+    {
+        let target = gpu.target();
+        // SAFETY: `draw` records on the device that made the target, here and below.
+        let begin = |cmd| unsafe { target.begin(cmd, [0.0; 4]) };
+        // SAFETY: as above.
+        let end = |cmd| unsafe {
+            target.end(cmd);
+            target.cmd_copy_to_host(cmd);
+        };
+        let pass = Target::render_pass(target.render_pass());
+        scene.draw(layout, pass, (&views, ranges), begin, end);
+        let pixels = scene.loaded.pixels();
+        assert!(covered(&pixels) > 200);
+        if right.is_empty() {
+            right.clone_from(&pixels);
+            let slot = scene.loaded.surface().drawing().slot;
+            let prepared = scene.loaded.prepared();
+            let drawn = (0..9).map(|view| {
+                let made = hold_to_twin(slot, prepared, &scene.list, view);
+                made.iter().map(|own| own.list.len()).sum::<usize>()
+            });
+            let drawn: Vec<usize> = drawn.collect();
+            assert!(drawn[4] == 0 && drawn[0] > 0, "{drawn:?}");
+        }
+        assert!(pixels == right, "{ranges:?}");
+    }
+    // SAFETY: every submission has been waited for.
+    unsafe { single.destroy(gpu.device.raw()) };
+    drop(scene);
+    gpu.finish();
+}
+
+const NONE: vk::RenderingFlags = vk::RenderingFlags::empty();
+
+/// Two eyes an instance have one list, that of the first.
+#[test]
+fn with_multiview_eyes_have_one_list() {
+    let Some(gpu) = open() else { return };
+    if !gpu.device.info().support.optional.multiview {
+        println!("skipped: no multiview");
+        return gpu.finish();
+    }
+    let scene = Scene::new(&gpu, Decision::default());
+    let left = grid(3);
+    let half = |view: &View| View {
+        clip_from_model: view.clip_from_model.map(|[x, y, z, w]| [0.5 * x, y, z, w]),
+        ..*view
+    };
+    let right: Vec<View> = left.iter().map(half).collect();
+    let mut alone = Vec::new();
+    for views in [&left, &right] {
+        let canvas = Canvas::new(&gpu, ONE, 1);
+        let parts = [Part::Colour, Part::Depth];
+        // SAFETY: `draw` records on the device that made the canvas, here and below.
+        let begin = |cmd| unsafe { canvas.begin(cmd, &parts, 1.0, 0, NONE) };
+        // SAFETY: as above.
+        let end = |cmd| unsafe { canvas.end(cmd, Part::Colour) };
+        let target = Target::new(COLOURED);
+        scene.draw(gpu.layout(), target, (views, &[0..9]), begin, end);
+        alone.extend(canvas.pixels());
+    }
+    let both: Vec<View> = left
+        .into_iter()
+        .zip(right)
+        .flat_map(<[View; 2]>::from)
+        .collect();
+    let canvas = Canvas::new(&gpu, ONE, 2);
+    let target = Target {
+        view_mask: 0b11,
+        ..Target::new(COLOURED)
+    };
+    let parts = [Part::Colour, Part::Depth];
+    // SAFETY: as above.
+    let begin = |cmd| unsafe { canvas.begin(cmd, &parts, 1.0, 0b11, NONE) };
+    // SAFETY: as above.
+    let end = |cmd| unsafe { canvas.end(cmd, Part::Colour) };
+    scene.draw(gpu.layout(), target, (&both, &[4..18, 0..4]), begin, end);
+    assert!(covered(&alone) > 500);
+    assert!(canvas.pixels() == alone, "an eye sees something else");
+    let slot = scene.loaded.surface().drawing().slot;
+    hold_to_twin(slot, scene.loaded.prepared(), &scene.list, 2);
+    drop(canvas);
+    drop(scene);
     gpu.finish();
 }

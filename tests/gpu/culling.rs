@@ -4,7 +4,8 @@ use std::rc::Rc;
 
 use ash::vk;
 use hullform::gpu::{
-    Cut, Decision, Fill, Metric, Outcome, Pipelines, Residence, Samples, Shading, View,
+    Cut, Decision, Fill, Metric, Outcome, Pipelines, Residence, Samples, Shading, SurfaceOptions,
+    View,
 };
 use hullform::host::{self, Owned, Shot, Style};
 use hullform::mesh::Model;
@@ -24,7 +25,10 @@ struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     fn new(gpu: &'a Gpu, model: &Model, residence: Residence, cut: Cut) -> Subject<'a> {
-        let options = options(residence);
+        Subject::with(gpu, model, options(residence), cut)
+    }
+
+    fn with(gpu: &'a Gpu, model: &Model, options: SurfaceOptions, cut: Cut) -> Subject<'a> {
         let prepared = prepare(model, METHODS[0].name);
         // Models are large: what drivers lose of them has to be worked around.
         let workarounds = &gpu.device.info().workarounds;
@@ -79,8 +83,18 @@ fn culling(metric: Metric) -> Decision {
     }
 }
 
+/// The pixels that differ.
+fn differing(a: &[u8], b: &[u8]) -> Vec<usize> {
+    let pixels = a.chunks(4).zip(b.chunks(4)).enumerate();
+    pixels
+        .filter(|(_, (a, b))| a != b)
+        .map(|(at, _)| at)
+        .collect()
+}
+
 /// With and without what can be left out, for some views: what was left out of all of them.
 fn assert_same_pictures(
+    gpu: &Gpu,
     name: &str,
     subject: &mut Subject<'_>,
     model: &Model,
@@ -107,8 +121,18 @@ fn assert_same_pictures(
         };
         let whole = subject.draw(whole, view);
         let culled = subject.draw(culling(metric), view);
-        let differing = whole.0.chunks(4).zip(culled.0.chunks(4));
-        let differing = differing.filter(|(a, b)| a != b).count();
+        let mut differing = differing(&whole.0, &culled.0);
+        if !differing.is_empty() {
+            // What llvmpipe draws of a triangle may depend on what else is drawn with it: what has been left out is in no batch.
+            let others = SurfaceOptions {
+                batch_vertices: 1000,
+                ..subject.loaded.surface().options()
+            };
+            let mut other = Subject::with(gpu, model, others, subject.cut);
+            let other = other.draw(culling(metric), view).0;
+            differing.retain(|&at| other[4 * at..][..4] != whole.0[4 * at..][..4]);
+        }
+        let differing = differing.len();
         assert_eq!(
             differing, 0,
             "{name}, view {number} by {metric:?}: {view:?}"
@@ -146,7 +170,7 @@ fn what_is_left_out_is_not_seen() {
     for (number, (name, model)) in built_in.into_iter().chain(files).enumerate() {
         let cut = cut(5.0, SPACINGS[number % 2]);
         let mut subject = Subject::new(&gpu, &model, RESIDENCES[number / 2 % 2], cut);
-        let culled = assert_same_pictures(&name, &mut subject, &model, views);
+        let culled = assert_same_pictures(&gpu, &name, &mut subject, &model, views);
         println!("{name}: {culled:?}");
         sum += culled;
         // No other patches are left out for their backs.

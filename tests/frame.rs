@@ -347,14 +347,14 @@ fn decisions(list: &DrawList, prepared: &Prepared, pass: usize, seed: u32) -> Ve
         let share = (random(patch) % 1000) as f32 / 1000.0;
         let level = 1.0 + share * (list.cut().level - 1.0);
         let cut = Cut {
-            level: if seed % 3 == 0 {
+            level: if seed.is_multiple_of(3) {
                 list.cut().level
             } else {
                 level
             },
             ..list.cut()
         };
-        let drawn = seed % 3 != 2 || random(patch) % 5 == 0;
+        let drawn = seed % 3 != 2 || random(patch).is_multiple_of(5);
         let levels = list.levels(prepared, pass, patch).filter(|_| drawn);
         let levels = levels.and_then(|_| cut.levels(patches, patch as usize));
         levels.map_or_else(abi::PatchDraw::default, |own| abi::PatchDraw {

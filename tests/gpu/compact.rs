@@ -284,7 +284,8 @@ fn views_are_drawn_together_one_by_one_and_in_any_ranges() {
     let mut views = grid(3);
     // One of which nothing is seen.
     views[4].clip_from_model[3][0] += 100.0;
-    let all: [&[Range<u32>]; 3] = [&[0..9], &[0..2, 2..7, 7..9], &[5..9, 0..5]];
+    let whole = std::slice::from_ref(&(0..9));
+    let all: [&[Range<u32>]; 3] = [whole, &[0..2, 2..7, 7..9], &[5..9, 0..5]];
     let mut right = Vec::new();
     for (layout, ranges) in [gpu.layout(), &single]
         .into_iter()
@@ -347,7 +348,13 @@ fn with_multiview_eyes_have_one_list() {
         // SAFETY: as above.
         let end = |cmd| unsafe { canvas.end(cmd, Part::Colour) };
         let target = Target::new(COLOURED);
-        scene.draw(gpu.layout(), target, (views, &[0..9]), begin, end);
+        scene.draw(
+            gpu.layout(),
+            target,
+            (views, std::slice::from_ref(&(0..9))),
+            begin,
+            end,
+        );
         alone.extend(canvas.pixels());
     }
     let both: Vec<View> = left

@@ -30,7 +30,8 @@ const uint BINDING_POINTS = 5u;
 const uint BINDING_SCRATCH = 6u;
 // Frame, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
 const uint BINDING_COUNTERS = 7u;
-// Frame, binding: `PatchDraw` records, what the host decides about each patch; where patches are cut before they are drawn, `SubPatch` records.
+// Frame, binding: `PatchDraw` records, what is decided about each patch, or, where patches are cut before they are drawn, `SubPatch` records. Where the device
+// decides, behind those of all views the patches that are drawn in each: `DrawnBatch` records, numbers of patches, and what workgroups of patches need.
 const uint BINDING_DRAWS = 8u;
 // Frame, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
 const uint BINDING_CAPTURE = 9u;
@@ -232,8 +233,8 @@ const uint PLACE_FLIPPED = 2147483648u;
 const uint TABLE_TANGENTS = 2147483648u;
 // Frame flag: spacing is fractional-even, else equal.
 const uint FRAME_FRACTIONAL_EVEN = 1u;
-// Frame flag: slots come from the host, else from the batch's counter.
-const uint FRAME_HOST_SLOTS = 2u;
+// Frame flag: slots come from the host, or where the device decides from there, else from the batch's counter.
+const uint FRAME_GIVEN_SLOTS = 2u;
 // Frame flag: the evaluation shader records what it produces.
 const uint FRAME_CAPTURE = 4u;
 // Frame flag: vertices whose position has an odd number of bits are drawn elsewhere, so that cracks show.
@@ -266,6 +267,32 @@ const uint DECIDE_CURVATURE = 64u;
 const uint DECIDE_BOX = 128u;
 // Flag of a `Decision`: rows of samples in a pixel, and columns; four bits.
 const uint DECIDE_ROWS_SHIFT = 8u;
+// Flag of a `Compaction`, where spacing is fractional: the same as a frame's. Windows are of points.
+const uint COMPACT_POINTS = 2u;
+// Flag of a `Compaction`: commands begin with any instance (`drawIndirectFirstInstance`).
+const uint COMPACT_FIRST_INSTANCE = 4u;
+// Flag of a `Compaction`: which step, two bits.
+const uint COMPACT_STEP_SHIFT = 4u;
+// Step: what workgroups of patches need.
+const uint COMPACT_COUNT = 0u;
+// Step: the same summed up.
+const uint COMPACT_SUM = 1u;
+// Step: the list of what is drawn, slots, and where batches begin.
+const uint COMPACT_LIST = 2u;
+// Step: the commands of batches.
+const uint COMPACT_COMMANDS = 3u;
+// Flag of a `Compaction`: control points a patch; six bits. Views an instance stand there as in a frame.
+const uint COMPACT_CONTROLS_SHIFT = 8u;
+// Words of a `DrawnBatch`.
+const uint BATCH_WORDS = 7u;
+// Word of a `DrawnBatch`: its first patch in the list.
+const uint BATCH_FIRST = 4u;
+// Word of a `DrawnBatch`: how many patches.
+const uint BATCH_PATCHES = 5u;
+// Word of a `DrawnBatch`: patches an instance.
+const uint BATCH_PER_INSTANCE = 6u;
+// Instead of the number of a patch: behind the last that is drawn.
+const uint NOT_DRAWN = 4294967295u;
 // In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
 const uint HULL_SPLINE = 2147483648u;
 // There: it is drawn from the depth on that it lies at, see `method/depths.rs`.
@@ -317,8 +344,8 @@ const uint SHADING_HEIGHT = 9u;
 
 // What is decided about a patch before it is drawn.
 struct PatchDraw {
-    // Where its slot in the scratch ring begins, when the host gives slots. Where the device decides, the `DECIDE_...` flag by which it is not drawn,
-    // or 0.
+    // Where its slot in the scratch ring begins, when the host gives slots or the device decides; then, of a patch that is not drawn, the `DECIDE_...` flag that
+    // says why, or 0.
     uint slot;
     // Levels of its edges from corner i to corner i + 1, when it has levels of its own.
     vec4 edges;
@@ -396,6 +423,8 @@ struct PatchSides {
     uint sides[4];
     // So many of its control vertices, the first, have the surface in their convex hull, and `HULL_...` flags; 0 where none are known to.
     uint hull;
+    // Where among these lists stands how many points it needs in the ring at levels 0..=10.
+    uint needs;
 };
 
 // What is decided of all patches in each of some views; push constants.
@@ -414,6 +443,44 @@ struct Decision {
     vec2 size;
     // How many control vertices there are.
     uint vertices;
+};
+
+// What is made of decisions: the patches that are drawn, in batches by what they need; push constants.
+struct Compaction {
+    // `COMPACT_...` flags.
+    uint flags;
+    // The first view.
+    uint view;
+    // Behind the `PatchDraw` records of all views, counted in words, where the `DrawnBatch` records of view 0 stand; other views follow.
+    uint batches;
+    // Where the numbers of the patches that are drawn in view 0 stand.
+    uint list;
+    // How many batches are recorded; no view needs more.
+    uint count;
+    // How many points of the ring patches begin in that are drawn by one batch, or else how many these are.
+    uint window;
+    // Points of each slot, where windows are of patches.
+    uint points;
+    // Tessellated vertices an instance, on drivers that bound them; else 0.
+    uint instance_vertices;
+};
+
+// What a batch draws in a view. It begins with what `vkCmdDrawIndirect` reads (`VkDrawIndirectCommand`).
+struct DrawnBatch {
+    // Vertices an instance.
+    uint vertices;
+    // Instances; none where nothing is drawn.
+    uint instances;
+    // 0.
+    uint first_vertex;
+    // Which views the instances belong to: those of each follow upon its number times the patches of the pass.
+    uint first_instance;
+    // Its first patch, in the list of those that are drawn.
+    uint first;
+    // How many patches.
+    uint patches;
+    // How many an instance; the last may have fewer.
+    uint per_instance;
 };
 
 // A point that is computed from control vertices.
@@ -535,15 +602,16 @@ struct Frame {
     float level;
     // `FRAME_...` flags.
     uint flags;
-    // The first patch of the draw; where patterns are drawn, the first entry of the table of instances.
+    // The first patch of the draw; where patterns are drawn, the first entry of the table of instances; where the device decides, the word at which the batch's
+    // `DrawnBatch` of view 0 stands.
     uint first_patch;
     // The patch behind the last of the draw.
     uint end_patch;
-    // Patches an instance of the draw; one where patterns are drawn.
+    // Patches an instance of the draw; one where patterns are drawn; where the device decides, words from a view's batches to the next view's.
     uint patches_per_instance;
-    // The batch's counter.
+    // The batch's counter; where the device decides, the word at which the list of patches that are drawn in view 0 stands.
     uint counter;
-    // Instances of the draw that one view has: those of a view come in a row.
+    // Instances of the draw that one view has, or may have: those of a view come in a row.
     uint instances;
     // The first view.
     uint view;

@@ -34,7 +34,7 @@ void main() {
     if (any(equal(cells_of(record), uvec2(1u)))) level = max(level, 1u);
 #endif
     uint count = drawn ? scratch_points(record, level) : 0u;
-    if (gl_InvocationID == 0) out_slot = take_slot(number, count);
+    if (gl_InvocationID == 0) out_slot = take_slot(number, in_view[0], count);
     barrier();
     uint slot = out_slot;
     drawn = drawn && slot != NO_SLOT;

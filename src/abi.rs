@@ -16,8 +16,8 @@ pub use constants::*;
 structs! {
     /// What is decided about a patch before it is drawn.
     PatchDraw {
-        /// Where its slot in the scratch ring begins, when the host gives slots. Where the device decides, the `DECIDE_...` flag by which it is not drawn,
-        /// or 0.
+        /// Where its slot in the scratch ring begins, when the host gives slots or the device decides; then, of a patch that is not drawn, the `DECIDE_...` flag that
+        /// says why, or 0.
         slot: u32,
         /// Levels of its edges from corner i to corner i + 1, when it has levels of its own.
         edges: [f32; 4],
@@ -95,6 +95,8 @@ structs! {
         sides: [u32; 4],
         /// So many of its control vertices, the first, have the surface in their convex hull, and `HULL_...` flags; 0 where none are known to.
         hull: u32,
+        /// Where among these lists stands how many points it needs in the ring at levels 0..=10.
+        needs: u32,
     }
 
     /// What is decided of all patches in each of some views; push constants.
@@ -113,6 +115,44 @@ structs! {
         size: [f32; 2],
         /// How many control vertices there are.
         vertices: u32,
+    }
+
+    /// What is made of decisions: the patches that are drawn, in batches by what they need; push constants.
+    Compaction {
+        /// `COMPACT_...` flags.
+        flags: u32,
+        /// The first view.
+        view: u32,
+        /// Behind the `PatchDraw` records of all views, counted in words, where the `DrawnBatch` records of view 0 stand; other views follow.
+        batches: u32,
+        /// Where the numbers of the patches that are drawn in view 0 stand.
+        list: u32,
+        /// How many batches are recorded; no view needs more.
+        count: u32,
+        /// How many points of the ring patches begin in that are drawn by one batch, or else how many these are.
+        window: u32,
+        /// Points of each slot, where windows are of patches.
+        points: u32,
+        /// Tessellated vertices an instance, on drivers that bound them; else 0.
+        instance_vertices: u32,
+    }
+
+    /// What a batch draws in a view. It begins with what `vkCmdDrawIndirect` reads (`VkDrawIndirectCommand`).
+    DrawnBatch {
+        /// Vertices an instance.
+        vertices: u32,
+        /// Instances; none where nothing is drawn.
+        instances: u32,
+        /// 0.
+        first_vertex: u32,
+        /// Which views the instances belong to: those of each follow upon its number times the patches of the pass.
+        first_instance: u32,
+        /// Its first patch, in the list of those that are drawn.
+        first: u32,
+        /// How many patches.
+        patches: u32,
+        /// How many an instance; the last may have fewer.
+        per_instance: u32,
     }
 
     /// A point that is computed from control vertices.
@@ -234,15 +274,16 @@ structs! {
         level: f32,
         /// `FRAME_...` flags.
         flags: u32,
-        /// The first patch of the draw; where patterns are drawn, the first entry of the table of instances.
+        /// The first patch of the draw; where patterns are drawn, the first entry of the table of instances; where the device decides, the word at which the batch's
+        /// `DrawnBatch` of view 0 stands.
         first_patch: u32,
         /// The patch behind the last of the draw.
         end_patch: u32,
-        /// Patches an instance of the draw; one where patterns are drawn.
+        /// Patches an instance of the draw; one where patterns are drawn; where the device decides, words from a view's batches to the next view's.
         patches_per_instance: u32,
-        /// The batch's counter.
+        /// The batch's counter; where the device decides, the word at which the list of patches that are drawn in view 0 stands.
         counter: u32,
-        /// Instances of the draw that one view has: those of a view come in a row.
+        /// Instances of the draw that one view has, or may have: those of a view come in a row.
         instances: u32,
         /// The first view.
         view: u32,

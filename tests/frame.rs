@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
+use hullform::abi;
 use hullform::frame::{
-    Backend, Cut, Draw, DrawList, Residence, Slots, SurfaceOptions, TessellatedPoint,
+    Backend, Cut, Decides, Draw, DrawList, Residence, Slots, SurfaceOptions, TessellatedPoint,
 };
 use hullform::mesh::{Model, builtin};
 use hullform::method::{DepthTags, METHODS, MethodOptions, Prepared, SurfacePoint};
 use hullform::plan::Database;
-use hullform::tessellation::{Spacing, required_level};
+use hullform::tessellation::{Levels, Spacing, required_level};
 
 /// The limit of drivers that lose patches beyond 16 bits, tighter ones to single patches, and none.
 const INSTANCES: [Option<u32>; 4] = [None, Some(65_535), Some(2_000), Some(1)];
@@ -165,7 +166,7 @@ fn vacant_slots_are_drawn_nowhere() {
                 for batch in list.batches() {
                     instances += batch.draws().iter().fold(0, |sum, draw| match draw {
                         Draw::Pattern { instances, .. } => sum + instances,
-                        Draw::Patches { .. } => sum,
+                        Draw::Patches { .. } | Draw::Decided { .. } => sum,
                     });
                 }
                 let tessellated = list.tessellate(prepared, &controls).expect("its own");
@@ -301,7 +302,7 @@ fn every_patch_is_an_instance_of_a_pattern() {
             assert!((pattern as usize) < list.patterns().len());
             instances as usize
         }
-        Draw::Patches { .. } => panic!("patterns are drawn"),
+        Draw::Patches { .. } | Draw::Decided { .. } => panic!("patterns are drawn"),
     });
     assert_eq!(drawn.sum::<usize>(), all);
 }
@@ -336,4 +337,113 @@ fn a_cut_tells_the_ring_that_it_needs() {
         }
     }
     assert!(ringed > 0);
+}
+
+/// Decisions of any kind: nothing, levels below the cut's, or all of it.
+fn decisions(list: &DrawList, prepared: &Prepared, pass: usize, seed: u32) -> Vec<abi::PatchDraw> {
+    let patches = &prepared.passes[pass];
+    let random = |patch: u32| (patch + 1).wrapping_mul(2_654_435_761).rotate_left(seed) >> 8;
+    let decided = (0..patches.patches.len() as u32).map(|patch| {
+        let share = (random(patch) % 1000) as f32 / 1000.0;
+        let level = 1.0 + share * (list.cut().level - 1.0);
+        let cut = Cut {
+            level: if seed.is_multiple_of(3) {
+                list.cut().level
+            } else {
+                level
+            },
+            ..list.cut()
+        };
+        let drawn = seed % 3 != 2 || random(patch).is_multiple_of(5);
+        let levels = list.levels(prepared, pass, patch).filter(|_| drawn);
+        let levels = levels.and_then(|_| cut.levels(patches, patch as usize));
+        levels.map_or_else(abi::PatchDraw::default, |own| abi::PatchDraw {
+            slot: 0,
+            edges: own.edges,
+            inside: own.inside,
+        })
+    });
+    decided.collect()
+}
+
+/// Holds what is made of decisions about a pass to its promises: how many batches draw nothing.
+fn hold_compacted(list: &DrawList, prepared: &Prepared, pass: usize, seed: u32) -> usize {
+    let decided = decisions(list, prepared, pass, seed);
+    let Some(made) = list.compacted(prepared, pass, &decided) else {
+        return 0;
+    };
+    let drawn = (0u32..).zip(&decided).filter(|(_, own)| own.inside > 0.0);
+    assert!(drawn.map(|(patch, _)| patch).eq(made.list.iter().copied()));
+    let recorded = list.batches().filter(|batch| batch.pass() == pass).count();
+    assert_eq!(made.batches.len(), recorded);
+    let mut next = 0;
+    for batch in &made.batches {
+        assert_eq!(batch.first, next, "one after another");
+        next += batch.patches;
+        let places = batch.per_instance * batch.instances;
+        assert!(places >= batch.patches && places < batch.patches + batch.instances.max(1));
+        let own = batch.first as usize..next as usize;
+        // Without a ring there are no slots.
+        if list.options().residence == Residence::Cache {
+            continue;
+        }
+        let mut end = 0;
+        for (&patch, &slot) in made.list[own.clone()].iter().zip(&made.slots[own]) {
+            let own = &decided[patch as usize];
+            let levels = Levels {
+                domain: prepared.passes[pass].domain,
+                cells: [1; 2],
+                edges: own.edges,
+                inside: own.inside,
+            };
+            assert!(slot >= end, "slots do not overlap");
+            end = slot + prepared.passes[pass].points(patch as usize, required_level(&levels, 10));
+        }
+        assert!(end <= list.options().ring_points());
+    }
+    assert_eq!(next as usize, made.list.len());
+    made.batches.iter().filter(|own| own.patches == 0).count()
+}
+
+/// Whatever a device decides, what it makes of that draws each patch once, in no more batches than are recorded, each within the ring.
+#[test]
+fn what_is_made_of_decisions_draws_what_is_drawn_once_and_within_bounds() {
+    let (mut lists, mut empty) = (0, 0);
+    for name in ["cube", "ngons", "hull", "pole-64", "sheet"] {
+        for prepared in prepared(name) {
+            for (ring_bytes, batch_vertices) in
+                [(1 << 20, u32::MAX), (1 << 14, u32::MAX), (1 << 14, 500)]
+            {
+                for residence in Residence::ALL {
+                    let options = SurfaceOptions {
+                        ring_bytes,
+                        batch_vertices,
+                        residence,
+                        decides: Decides::Device,
+                        greatest_level: 16.0,
+                        ..SurfaceOptions::default()
+                    };
+                    // A pole of 64 faces may be too much for a small ring.
+                    let Ok(counters) = DrawList::ring_counters(&prepared, &options, Some(2000))
+                    else {
+                        continue;
+                    };
+                    for (level, spacing) in [1.0, 5.0, 16.0].into_iter().zip(SPACINGS.repeat(2)) {
+                        let cut = Cut { level, spacing };
+                        let list = DrawList::new(&prepared, &options, Some(2000), cut, None);
+                        let list = list.expect("what holds the greatest level holds all");
+                        let ringed = list.batches().filter(|batch| batch.points() > 0);
+                        assert!(ringed.count() as u64 <= counters);
+                        for pass in 0..prepared.passes.len() {
+                            empty += (0..3)
+                                .map(|seed| hold_compacted(&list, &prepared, pass, seed))
+                                .sum::<usize>();
+                        }
+                        lists += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(lists > 200 && empty > 200, "{lists} {empty}");
 }

@@ -40,14 +40,20 @@ vec3 use_origin(uint slot, uint number) { return scratch[slot + number].xyz; }
 vec3 point_at(uint place) { return scratch[place].xyz; }
 
 #ifdef STAGE_CONTROL
+// The slot that what is drawn was given beforehand.
+uint given_slot(uint number, uint view) {
+    uint own = min(number, frame.end_patch - 1u);
+    if (are_sub_patches()) return sub_patches[own].slot;
+    return draws[((frame.flags & FRAME_DECIDED) != 0u ? view * bases.patches : 0u) + own].slot;
+}
+
 // A slot for `points` points of a patch, or NO_SLOT when the ring has no room: the patch is not drawn then, and the overflow is counted so
 // that the host can draw again. A control shader may run more than once (Vulkan spec, "Tessellation Control Shader Execution"), so the sum
-// of what is taken can exceed the sum of what is needed. Slots from the host do not depend on who runs when.
-uint take_slot(uint number, uint points) {
+// of what is taken can exceed the sum of what is needed. Slots that are given do not depend on who runs when.
+uint take_slot(uint number, uint view, uint points) {
     atomicAdd(counters[COUNTER_POINTS], points);
-    bool host = (frame.flags & FRAME_HOST_SLOTS) != 0u;
-    uint given = are_sub_patches() ? sub_patches[number].slot : draws[number].slot;
-    uint slot = host ? given : atomicAdd(counters[frame.counter], points);
+    bool is_given = (frame.flags & FRAME_GIVEN_SLOTS) != 0u;
+    uint slot = is_given ? given_slot(number, view) : atomicAdd(counters[frame.counter], points);
     uint room = uint(scratch.length());
     if (points <= room && slot <= room - points) return slot;
     atomicAdd(counters[COUNTER_OVERFLOWS], 1u);

@@ -26,7 +26,8 @@ constants! {
     BINDING_SCRATCH = 6;
     /// Frame, binding: one allocation counter a batch, behind `COUNTER_OVERFLOWS`.
     BINDING_COUNTERS = 7;
-    /// Frame, binding: `PatchDraw` records, what the host decides about each patch; where patches are cut before they are drawn, `SubPatch` records.
+    /// Frame, binding: `PatchDraw` records, what is decided about each patch, or, where patches are cut before they are drawn, `SubPatch` records. Where the device
+    /// decides, behind those of all views the patches that are drawn in each: `DrawnBatch` records, numbers of patches, and what workgroups of patches need.
     BINDING_DRAWS = 8;
     /// Frame, binding: the number of captured vertices, then the `Captured` records; where vertices are counted, one a patch.
     BINDING_CAPTURE = 9;
@@ -238,8 +239,8 @@ constants! {
 
     /// Frame flag: spacing is fractional-even, else equal.
     FRAME_FRACTIONAL_EVEN = 1;
-    /// Frame flag: slots come from the host, else from the batch's counter.
-    FRAME_HOST_SLOTS = 2;
+    /// Frame flag: slots come from the host, or where the device decides from there, else from the batch's counter.
+    FRAME_GIVEN_SLOTS = 2;
     /// Frame flag: the evaluation shader records what it produces.
     FRAME_CAPTURE = 4;
     /// Frame flag: vertices whose position has an odd number of bits are drawn elsewhere, so that cracks show.
@@ -273,6 +274,32 @@ constants! {
     DECIDE_BOX = 128;
     /// Flag of a `Decision`: rows of samples in a pixel, and columns; four bits.
     DECIDE_ROWS_SHIFT = 8;
+    /// Flag of a `Compaction`, where spacing is fractional: the same as a frame's. Windows are of points.
+    COMPACT_POINTS = 2;
+    /// Flag of a `Compaction`: commands begin with any instance (`drawIndirectFirstInstance`).
+    COMPACT_FIRST_INSTANCE = 4;
+    /// Flag of a `Compaction`: which step, two bits.
+    COMPACT_STEP_SHIFT = 4;
+    /// Step: what workgroups of patches need.
+    COMPACT_COUNT = 0;
+    /// Step: the same summed up.
+    COMPACT_SUM = 1;
+    /// Step: the list of what is drawn, slots, and where batches begin.
+    COMPACT_LIST = 2;
+    /// Step: the commands of batches.
+    COMPACT_COMMANDS = 3;
+    /// Flag of a `Compaction`: control points a patch; six bits. Views an instance stand there as in a frame.
+    COMPACT_CONTROLS_SHIFT = 8;
+    /// Words of a `DrawnBatch`.
+    BATCH_WORDS = 7;
+    /// Word of a `DrawnBatch`: its first patch in the list.
+    BATCH_FIRST = 4;
+    /// Word of a `DrawnBatch`: how many patches.
+    BATCH_PATCHES = 5;
+    /// Word of a `DrawnBatch`: patches an instance.
+    BATCH_PER_INSTANCE = 6;
+    /// Instead of the number of a patch: behind the last that is drawn.
+    NOT_DRAWN = 0xffff_ffff;
     /// In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.
     HULL_SPLINE = 0x8000_0000;
     /// There: it is drawn from the depth on that it lies at, see `method/depths.rs`.

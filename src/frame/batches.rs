@@ -36,7 +36,7 @@ impl Run {
 
 /// What bounds a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Bounds {
+pub(crate) struct Bounds {
     /// Points in the ring, where there is one.
     pub ring: Option<u32>,
     /// Vertices.
@@ -137,7 +137,7 @@ impl Bounds {
     }
 
     /// Points and vertices of a patch, or of a piece.
-    fn needs(&self, drawn: Drawn<'_>, number: usize) -> [u32; 2] {
+    pub fn needs(&self, drawn: Drawn<'_>, number: usize) -> [u32; 2] {
         let (levels, spacing) = (drawn.levels(number), drawn.cut.spacing);
         let vertices = levels.map_or(0, |levels| self.backend.evaluations(&levels, spacing));
         let points = match self.uses_ring(drawn.pass) {
@@ -150,7 +150,7 @@ impl Bounds {
 
 /// How many quad patches, each cut into `segments` x `segments` cells, an instance of at most `most` vertices may hold. At least 1, which is
 /// always right: 65 x 65 vertices are far below any limit.
-fn patches_per_instance(most: u32, segments: u32) -> u32 {
+pub(super) fn patches_per_instance(most: u32, segments: u32) -> u32 {
     (most / ((segments + 1) * (segments + 1))).max(1)
 }
 

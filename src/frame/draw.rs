@@ -12,6 +12,11 @@ pub enum Draw {
         /// Instances.
         instances: u32,
     },
+    /// Those patches that the device has decided to draw, of one of the batches that it makes of them in each view.
+    Decided {
+        /// Which, of those of the pass.
+        batch: u32,
+    },
     /// An instance a patch, all with the same refinement pattern.
     Pattern {
         /// Which of [`DrawList::patterns`](super::DrawList::patterns).

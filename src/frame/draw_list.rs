@@ -6,11 +6,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::abi;
 use crate::error::{Error, Misuse, Result};
 use crate::frame::batches::{Run, batches, most_ring_batches};
+use crate::frame::compaction::{Compaction, compactions, most_batches};
 use crate::frame::patterns::Patterns;
-use crate::frame::sub_patches::{Drawn, has_sub_patches, join, levels_of, sub_patches};
+use crate::frame::sub_patches::{Drawn, all_sub_patches, has_sub_patches, join, levels_of};
 use crate::frame::tagged::Tagged;
 use crate::frame::{Cut, Decides, Draw, Residence, SurfaceOptions};
-use crate::method::{DepthTags, MacroFaces, Pass, Prepared};
+use crate::method::{DepthTags, MacroFaces, Prepared};
 use crate::tessellation::{Levels, Piece, Spacing};
 
 /// What one frame decided about one surface: a plain value that is built without a device, and can be kept as long as its cut and tags stay.
@@ -26,6 +27,8 @@ pub struct DrawList {
     cut: Cut,
     cached_level: Option<u32>,
     runs: Vec<Run>,
+    /// By pass, where the device decides.
+    pub(super) compactions: Vec<Option<Compaction>>,
     ring_batches: u32,
     /// By run.
     draws: Vec<Vec<Draw>>,
@@ -79,7 +82,10 @@ impl DrawList {
             tagged: by_tags.map(|all: &Vec<Vec<Levels>>| all[number].as_slice()),
             sub_patches: by_pieces.map(|all| all[number].as_slice()),
         });
-        let runs = batches(each, bounds)?;
+        let (compactions, runs) = match options.decides {
+            Decides::Host => (Vec::new(), batches(each, bounds)?),
+            Decides::Device => compactions(prepared, cut, bounds)?,
+        };
         let uses_ring = |run: &&Run| bounds.uses_ring(&prepared.passes[run.pass]);
         let mut list = DrawList {
             number: new_number(),
@@ -97,6 +103,7 @@ impl DrawList {
             sub_patches: cut_first,
             instances: Vec::new(),
             patterns: Vec::new(),
+            compactions,
             runs,
         };
         list.decide(prepared);
@@ -113,8 +120,18 @@ impl DrawList {
         instance_vertices: Option<u32>,
     ) -> Result<u64> {
         options.check(prepared)?;
-        let bounds = options.bounds(instance_vertices);
-        let most = most_ring_batches(prepared, options.greatest_cuts(), bounds)?;
+        let (bounds, cuts) = (options.bounds(instance_vertices), options.greatest_cuts());
+        let most = match options.decides {
+            Decides::Host => most_ring_batches(prepared, cuts, bounds)?,
+            Decides::Device => {
+                let all = most_batches(prepared, cuts, bounds)?.into_iter();
+                let ringed = all.zip(&prepared.passes);
+                ringed
+                    .filter(|(_, pass)| bounds.uses_ring(pass))
+                    .map(|(own, _)| own)
+                    .sum()
+            }
+        };
         Ok(u64::from(most) * u64::from(options.rounds))
     }
 
@@ -152,6 +169,10 @@ impl DrawList {
                 self.instances[run.pass].resize(before, 0);
                 self.instances[run.pass].extend(instances);
                 self.draws.push(draws);
+            } else if self.options.decides == Decides::Device {
+                let first = self.runs.iter().position(|own| own.pass == run.pass);
+                let batch = (number - first.unwrap_or(number)) as u32;
+                self.draws.push(vec![Draw::Decided { batch }]);
             } else {
                 self.draws.push(vec![Draw::Patches {
                     first: run.first,
@@ -416,7 +437,7 @@ impl<'a> Batch<'a> {
         self.run().pass
     }
 
-    /// The patches; of the first and the last there may be pieces in other batches.
+    /// The patches; of the first and the last there may be pieces in other batches. Where the device decides, all of the pass, of which each batch draws some.
     pub fn patches(&self) -> Range<u32> {
         match self.sub_patches() {
             [] => self.drawn(),
@@ -462,19 +483,6 @@ impl<'a> Batch<'a> {
     pub fn draws(&self) -> &'a [Draw] {
         &self.list.draws[self.number]
     }
-}
-
-/// The sub-patches of each pass.
-fn all_sub_patches(
-    prepared: &Prepared,
-    cut: Cut,
-    tagged: Option<&[Vec<Levels>]>,
-) -> Vec<Vec<abi::SubPatch>> {
-    let of_pass = |(number, pass): (usize, &Pass)| {
-        let tagged = tagged.map(|all| all[number].as_slice());
-        sub_patches(pass, |patch| levels_of(pass, cut, tagged, patch))
-    };
-    prepared.passes.iter().enumerate().map(of_pass).collect()
 }
 
 /// # Errors

@@ -7,6 +7,8 @@ mod backend;
 mod batch;
 mod batches;
 mod chosen;
+mod compacted;
+mod compaction;
 mod culling;
 mod cut;
 mod decision;
@@ -23,6 +25,9 @@ mod tessellated;
 
 pub use backend::Backend;
 pub use chosen::hull_points;
+pub use compaction::Compacted;
+#[cfg(feature = "vulkan")]
+pub(crate) use compaction::{Compaction, most_batches};
 pub use culling::Culled;
 pub use cut::Cut;
 pub use decision::{Decision, Metric, Samples};

@@ -45,7 +45,7 @@ pub struct SurfaceOptions {
     pub ring_bytes: u64,
     /// Who gives slots.
     pub slots: Slots,
-    /// Who decides about patches. The device takes 24 bytes a patch and view, and as many a control vertex and pose.
+    /// Who decides about patches. The device takes some 30 bytes a patch and view, and 24 a control vertex and pose.
     pub decides: Decides,
     /// Vertices that can be captured at once; 0 for none.
     pub capture_vertices: u32,
@@ -198,7 +198,7 @@ impl SurfaceOptions {
     }
 
     /// What bounds a batch, with an instance's vertices where the driver bounds those.
-    pub(super) fn bounds(&self, instance_vertices: Option<u32>) -> Bounds {
+    pub(crate) fn bounds(&self, instance_vertices: Option<u32>) -> Bounds {
         let vertices = match self.capture_vertices {
             0 => u32::MAX / 2,
             captured => captured,

@@ -61,7 +61,7 @@ impl Outcome {
                 edges: levels.edges.map(counted),
                 inside: counted(levels.inside),
             };
-            match Culled::of(record.slot) {
+            match Culled::of(record.slot).filter(|_| record.inside == 0.0) {
                 Some(Culled::Frustum) => outcome.frustum += 1,
                 Some(Culled::Back) => outcome.back += 1,
                 Some(Culled::Small) => outcome.small += 1,

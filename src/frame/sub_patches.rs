@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use crate::abi;
 use crate::frame::Cut;
 use crate::frame::backend::Mould;
-use crate::method::Pass;
+use crate::method::{Pass, Prepared};
 use crate::tessellation::{
     Domain, Levels, Piece, Spacing, TESSELLATED, coordinates, piece_coordinates, triangulate,
 };
@@ -38,6 +38,19 @@ pub(super) fn sub_patches(
     (0..pass.extent()).flat_map(of_patch).collect()
 }
 
+/// The sub-patches of each pass.
+pub(super) fn all_sub_patches(
+    prepared: &Prepared,
+    cut: Cut,
+    tagged: Option<&[Vec<Levels>]>,
+) -> Vec<Vec<abi::SubPatch>> {
+    let of_pass = |(number, pass): (usize, &Pass)| {
+        let tagged = tagged.map(|all| all[number].as_slice());
+        sub_patches(pass, |patch| levels_of(pass, cut, tagged, patch))
+    };
+    prepared.passes.iter().enumerate().map(of_pass).collect()
+}
+
 /// The most sub-patches that a pass has at cuts up to a level, however edits change it.
 #[cfg(feature = "vulkan")]
 pub(crate) fn most_sub_patches(pass: &Pass, level: f32) -> u64 {
@@ -63,7 +76,7 @@ fn whole_levels(record: &abi::SubPatch) -> Option<Levels> {
 
 /// What is drawn of a pass: its patches, or sub-patches.
 #[derive(Clone, Copy)]
-pub(super) struct Drawn<'a> {
+pub(crate) struct Drawn<'a> {
     pub pass: &'a Pass,
     pub cut: Cut,
     /// By patch, where depth tags give them levels.

@@ -20,6 +20,7 @@ use crate::gpu::{FrameSlot, Layout, Pose, Tables};
 pub struct DecidePipeline {
     limits: vk::Pipeline,
     patches: vk::Pipeline,
+    compact: vk::Pipeline,
 }
 
 impl DecidePipeline {
@@ -37,15 +38,29 @@ impl DecidePipeline {
     ) -> Result<DecidePipeline> {
         // SAFETY: this function's contract.
         let made = |name| unsafe { compute_pipeline(device, layout, cache, name, &Embedded) };
-        let limits = made("limits.comp")?;
-        match made("decide.comp") {
-            Ok(patches) => Ok(DecidePipeline { limits, patches }),
+        let mut all = DecidePipeline {
+            limits: vk::Pipeline::null(),
+            patches: vk::Pipeline::null(),
+            compact: vk::Pipeline::null(),
+        };
+        let mut make = || {
+            all.limits = made("limits.comp")?;
+            all.patches = made("decide.comp")?;
+            all.compact = made("compact.comp")?;
+            Ok(())
+        };
+        match make() {
+            Ok(()) => Ok(all),
             Err(error) => {
-                // SAFETY: it was just made, and nothing uses it.
-                unsafe { device.destroy_pipeline(limits, None) };
+                // SAFETY: they were just made, and nothing uses them.
+                unsafe { all.destroy(device) };
                 Err(error)
             }
         }
+    }
+
+    pub(super) fn compact(&self) -> vk::Pipeline {
+        self.compact
     }
 
     /// Destroys them.
@@ -53,10 +68,11 @@ impl DecidePipeline {
     /// # Safety
     /// `device` made it, and no submitted command still uses it.
     pub unsafe fn destroy(self, device: &ash::Device) {
-        // SAFETY: this function's contract.
+        // SAFETY: this function's contract; null handles are fine.
         unsafe {
             device.destroy_pipeline(self.limits, None);
             device.destroy_pipeline(self.patches, None);
+            device.destroy_pipeline(self.compact, None);
         };
     }
 }
@@ -113,7 +129,8 @@ impl FrameSlot {
         // SAFETY: this function's contract.
         unsafe {
             let write = vk::AccessFlags::SHADER_WRITE;
-            cmd_make_visible(device, cmd, readers | compute, compute, write);
+            let before = readers | compute | vk::PipelineStageFlags::DRAW_INDIRECT;
+            cmd_make_visible(device, cmd, before, compute, write);
             if decision.metric != Metric::Cut || decision.frustum {
                 self.cmd_limits(
                     device,
@@ -139,9 +156,10 @@ impl FrameSlot {
                 device.cmd_dispatch(cmd, groups, views.len() as u32 / eyes, 1);
             }
         }
-        let read = vk::AccessFlags::SHADER_READ;
         // SAFETY: as above.
-        unsafe { cmd_make_visible(device, cmd, compute, readers, read) };
+        unsafe {
+            self.cmd_compact(device, cmd, layout, pipeline, (tables, pose), list, decided);
+        }
         self.set_decided(list, views.end);
         Ok(())
     }

@@ -75,8 +75,16 @@ impl Drawing<'_> {
             let frame = self.frame(constants.eyes, views.start, batch, draw);
             // SAFETY: as above; the list's patterns are those that were written last.
             unsafe {
-                constants.cmd_push(device, cmd, &frame);
-                self.cmd_draw_one(device, cmd, instances, batch, draw);
+                match *draw {
+                    Draw::Decided { batch: number } => {
+                        let commands = self.decided_commands(layout, batch, number, &views);
+                        commands.cmd_draw(device, cmd, constants, frame);
+                    }
+                    _ => {
+                        constants.cmd_push(device, cmd, &frame);
+                        self.cmd_draw_one(device, cmd, instances, batch, draw);
+                    }
+                }
             }
         }
         Ok(())
@@ -177,6 +185,8 @@ impl Drawing<'_> {
                 // SAFETY: this function's contract.
                 unsafe { device.cmd_draw_indexed(cmd, count, instances * repeated, first, 0, 0) };
             }
+            // Its commands are on the device.
+            Draw::Decided { .. } => {}
         }
     }
 
@@ -198,6 +208,20 @@ impl Drawing<'_> {
                 segments,
                 ..
             } => (first_instance, 1, instances, segments),
+            Draw::Decided { batch: number } => {
+                let lists = &self.slot.lists()[batch.pass()];
+                // No view has more instances than patches.
+                (
+                    lists.batch(0, number),
+                    lists.view_words(),
+                    lists.patches(),
+                    0,
+                )
+            }
+        };
+        let counter = match *draw {
+            Draw::Decided { .. } => self.slot.lists()[batch.pass()].list(0),
+            _ => abi::COUNTER_BATCHES + batch.ring_batch(),
         };
         abi::Frame {
             // As the CPU has it, whatever the pass: control shaders compute the points that this level needs.
@@ -215,7 +239,7 @@ impl Drawing<'_> {
             first_patch: first,
             end_patch: batch.drawn().end,
             patches_per_instance: per_instance,
-            counter: abi::COUNTER_BATCHES + batch.ring_batch(),
+            counter,
             instances,
             view,
         }

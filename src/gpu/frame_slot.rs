@@ -12,6 +12,7 @@ use crate::error::{Error, Misuse, Result};
 use crate::frame::{Batch, Cut, Decides, DrawList, Residence, SurfaceOptions};
 use crate::gpu::barrier::{MOST_UPDATED, cmd_make_visible};
 use crate::gpu::bound::{Binding, Bound, Maker};
+use crate::gpu::lists::Lists;
 use crate::gpu::patterns::Patterns;
 use crate::gpu::pipeline::control_points;
 use crate::gpu::ring::RING_ACCESS;
@@ -47,6 +48,8 @@ struct Numbers {
     counts: Vec<usize>,
     /// A pass each: draws, instances.
     decisions: Vec<[usize; 2]>,
+    /// A pass each, where the device decides.
+    lists: Vec<Lists>,
 }
 
 /// What one frame writes about one surface, by the host before and by the device while it is drawn. It borrows nothing; the owner calls
@@ -142,6 +145,7 @@ impl FrameSlot {
             4 + u64::from(self.options.capture_vertices) * size_of::<abi::Captured>() as u64;
         let counters = 4 * (u64::from(abi::COUNTER_BATCHES) + counters);
         let views = u64::from(self.options.views) * size_of::<abi::View>() as u64;
+        self.numbers.lists = Lists::of_passes(prepared, &self.options, self.instance_vertices)?;
         let (bound, numbers) = (&mut self.bound, &mut self.numbers);
         let ring_bytes = match self.options.residence {
             Residence::Ring => self.options.ring_bytes,
@@ -165,6 +169,9 @@ impl FrameSlot {
             };
             let draws = size_of::<abi::PatchDraw>() as u64 * patches * views;
             let draws = draws.max(self.options.sub_patch_bytes(pass));
+            let lists = numbers.lists.get(sets.len());
+            let (lists, seen) = lists.map_or((0, storage), |own| own.room(views));
+            let draws = draws + lists;
             let instances = 4 * patches;
             let written = MemoryLocation::CpuToGpu;
             let mut capture = numbers.capture;
@@ -176,7 +183,7 @@ impl FrameSlot {
                     numbers.counts.push(capture);
                 }
                 [
-                    bound.add(maker, "draws", draws, storage, written)?,
+                    bound.add(maker, "draws", draws, seen, written)?,
                     bound.add(maker, "instances", instances, storage, written)?,
                 ]
             };
@@ -283,7 +290,7 @@ impl FrameSlot {
             return Err(Error::Misuse(Misuse::OtherSurface));
         }
         let (needed, given) = (list.counters(), self.counters);
-        if needed > given {
+        if needed > given || !self.has_lists(list) {
             return Err(Error::Misuse(Misuse::ManyBatches { needed, given }));
         }
         Ok(())
@@ -369,21 +376,6 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// What the device decided about the patches of a pass in a view; empty where the host decides, or there is no such pass or view. Meaningful when
-    /// [`cmd_read_back`](Self::cmd_read_back) has been executed.
-    pub fn decided(&self, pass: usize, view: u32) -> &[abi::PatchDraw] {
-        // What the host decides may be sub-patches, which are other records.
-        let of_device = self.options.decides == Decides::Device;
-        let decisions = self.numbers.decisions.get(pass).filter(|_| of_device);
-        let Some(&[draws, _]) = decisions else {
-            return &[];
-        };
-        let records: &[abi::PatchDraw] = bytemuck::cast_slice(self.bound.buffer(draws).bytes());
-        let count = records.len() / self.options.views.max(1) as usize;
-        let of_view = records.chunks(count.max(1)).nth(view as usize);
-        of_view.unwrap_or(&[])
-    }
-
     /// Records the copy of what was counted and captured to where the host can read it.
     ///
     /// # Safety
@@ -449,8 +441,8 @@ impl FrameSlot {
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
         let options = &self.options;
         flag(
-            options.slots == crate::frame::Slots::Host,
-            abi::FRAME_HOST_SLOTS,
+            options.slots == crate::frame::Slots::Host || options.decides == Decides::Device,
+            abi::FRAME_GIVEN_SLOTS,
         ) | flag(options.capture_vertices > 0, abi::FRAME_CAPTURE)
             | flag(options.amplify_cracks, abi::FRAME_PARITY)
             | flag(options.count_vertices, abi::FRAME_COUNT)
@@ -471,6 +463,16 @@ impl FrameSlot {
     /// The descriptor set of a pass, [`abi::SET_FRAME`].
     pub(super) fn set(&self, pass: usize) -> vk::DescriptorSet {
         self.bound.set(pass)
+    }
+
+    /// What is decided about the patches of a pass: of passes that there are.
+    pub(super) fn draws_buffer(&self, pass: usize) -> &Buffer {
+        self.bound.buffer(self.numbers.decisions[pass][0])
+    }
+
+    /// Where the lists of what is drawn of each pass stand, where the device decides.
+    pub(super) fn lists(&self) -> &[Lists] {
+        &self.numbers.lists
     }
 
     fn counters_buffer(&self) -> &Buffer {

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use ash::vk;
 
-use crate::error::Result;
-use crate::frame::{Batch, Draw};
+use crate::error::{Error, Misuse, Result};
+use crate::frame::{Batch, Decides, Draw};
 use crate::gpu::draw::Constants;
 use crate::gpu::{Drawing, Layout, Pipelines};
 
 /// The commands of one call at most (Vulkan spec, "Required Limits", `maxDrawIndirectCount` where there is more than one).
-const MOST_COMMANDS: u32 = 65_535;
+pub(super) const MOST_COMMANDS: u32 = 65_535;
 
 /// The draw commands of a batch, as Vulkan reads them: for each [`Draw`] one an instance of the model, in the order of their views. An engine that culls
 /// sets `instance_count` of the instance's command, of each draw, to 0.
@@ -90,7 +90,7 @@ impl Drawing<'_> {
     /// The commands of a batch with these views, for [`cmd_draw_indirect`](Self::cmd_draw_indirect) with the same.
     ///
     /// # Errors
-    /// As [`cmd_draw`](Self::cmd_draw).
+    /// As [`cmd_draw`](Self::cmd_draw); [`Misuse::DecidedByDevice`] where the device decides, which makes its commands itself.
     pub fn indirect_commands(
         &self,
         layout: &Layout,
@@ -99,6 +99,7 @@ impl Drawing<'_> {
         batch: Batch<'_>,
     ) -> Result<IndirectCommands> {
         self.check(pipelines, &views, batch)?;
+        check_commands(batch)?;
         let repeated = views.len() as u32 / pipelines.eyes();
         // Without the feature commands begin with instance 0, and each is a draw with constants of its own.
         let step = u32::from(layout.enabled().multi_draw_indirect);
@@ -129,6 +130,8 @@ impl Drawing<'_> {
                             first_instance: step * number * instances,
                         });
                     }
+                    // Refused above.
+                    Draw::Decided { .. } => {}
                 }
             }
         }
@@ -142,7 +145,7 @@ impl Drawing<'_> {
     /// buffer when the device draws. One call a draw where the device has `multiDrawIndirect` and `drawIndirectFirstInstance`, else one an instance.
     ///
     /// # Errors
-    /// As [`cmd_draw`](Self::cmd_draw).
+    /// As [`indirect_commands`](Self::indirect_commands).
     ///
     /// # Safety
     /// As [`cmd_draw`](Self::cmd_draw). The commands are in the buffer, as they were made but for their `instance_count`, which may be 0, and visible to
@@ -158,6 +161,7 @@ impl Drawing<'_> {
     ) -> Result<()> {
         let batch = indirect.batch;
         let pipeline = self.check(pipelines, &views, batch)?;
+        check_commands(batch)?;
         if views.is_empty() {
             return Ok(());
         }
@@ -199,6 +203,16 @@ impl Drawing<'_> {
     }
 }
 
+/// # Errors
+/// [`Misuse::DecidedByDevice`].
+fn check_commands(batch: Batch<'_>) -> Result<()> {
+    if batch.list().options().decides == Decides::Host {
+        return Ok(());
+    }
+    let what = "commands of the engine's own";
+    Err(Error::Misuse(Misuse::DecidedByDevice { what }))
+}
+
 /// Where the next commands stand.
 struct Commands {
     buffer: vk::Buffer,
@@ -217,7 +231,7 @@ impl Commands {
     ) {
         let &mut Commands { buffer, offset } = self;
         let stride = match draw {
-            Draw::Patches { .. } => {
+            Draw::Patches { .. } | Draw::Decided { .. } => {
                 let stride = size_of::<vk::DrawIndirectCommand>() as u32;
                 // SAFETY: this function's contract.
                 unsafe { device.cmd_draw_indirect(cmd, buffer, offset, count, stride) };

@@ -10,7 +10,11 @@ struct Lists<'a> {
     outline: &'a Outline,
     words: Vec<u32>,
     known: FxHashMap<u32, u32>,
+    needs: FxHashMap<Needs, u32>,
 }
+
+/// The points that a patch needs in the ring, by level.
+type Needs = [u32; abi::HIGHEST_LEVEL as usize + 1];
 
 impl Lists<'_> {
     /// Where the list of a side begins.
@@ -19,6 +23,7 @@ impl Lists<'_> {
             outline,
             words,
             known,
+            ..
         } = self;
         *known.entry(side).or_insert_with(|| {
             let first = words.len() as u32;
@@ -49,6 +54,16 @@ impl Lists<'_> {
         };
         place | abi::HULL_LISTED | spline
     }
+
+    /// Where it stands how many points a patch needs.
+    fn needs(&mut self, pass: &Pass, patch: usize) -> u32 {
+        let needs: Needs = std::array::from_fn(|level| pass.points(patch, level as u32));
+        let words = &mut self.words;
+        *self.needs.entry(needs).or_insert_with(|| {
+            words.extend(needs);
+            (words.len() - needs.len()) as u32
+        })
+    }
 }
 
 /// `PatchSides` of all patches of a pass, the lists of vertices that these point into, where the sides that patches have in common are there once; and, of the
@@ -59,6 +74,7 @@ pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] 
         outline,
         words: Vec::new(),
         known: FxHashMap::default(),
+        needs: FxHashMap::default(),
     };
     let records = pass
         .sides
@@ -67,6 +83,7 @@ pub(crate) fn deciding_tables(prepared: &Prepared, number: usize) -> [Table; 3] 
         .map(|(patch, sides)| abi::PatchSides {
             sides: sides.map(|side| lists.place(side)),
             hull: lists.hull(pass, patch) | pass.stage_flags(patch),
+            needs: lists.needs(pass, patch),
         });
     let records: Vec<abi::PatchSides> = records.collect();
     let ends = match number {

@@ -12,6 +12,7 @@ use hullform::method::{Displacement, METHODS};
 use hullform::tessellation::Spacing;
 
 use crate::common::gpu::{Gpu, bits, capturing, cut, prepare};
+use crate::compact::hold_to_twin;
 use crate::decide::{are_alike, seen, views};
 use crate::shapes;
 
@@ -339,6 +340,7 @@ fn thirty_instances_have_other_levels_in_each_frame_without_a_wait_between() {
         if frame >= SLOTS {
             flight.wait();
             for (number, view) in (0..).zip(of_frame(frame - SLOTS)) {
+                hold_to_twin(&flight.slot, &prepared, &list, number);
                 for (pass, patches) in prepared.passes.iter().enumerate() {
                     for (patch, record) in flight.slot.decided(pass, number).iter().enumerate() {
                         let outline = &prepared.outline;

@@ -9,6 +9,7 @@ mod common;
 mod backends;
 mod cache;
 mod canvas;
+mod compact;
 mod culling;
 mod decide;
 mod edges;

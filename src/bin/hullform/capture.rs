@@ -120,7 +120,8 @@ pub fn captured(
 
 /// The captured vertices by patch, v and u, each once.
 fn once_each(drawing: &Drawing<'_>, batch: Batch<'_>) -> Result<Vec<abi::Captured>> {
-    let patches = batch.patches().filter_map(|patch| {
+    let patches = drawing.surface().drawing().slot.drawn(batch, 0).iter();
+    let patches = patches.filter_map(|&patch| {
         let levels = decided(drawing, batch.pass(), patch)?;
         Some(levels.vertices(batch.list().cut().spacing))
     });

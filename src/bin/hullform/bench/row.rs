@@ -12,6 +12,8 @@ use super::yardstick;
 pub struct Work {
     /// Runs of the evaluating shader.
     pub evaluations: u64,
+    /// Patches that control shaders ran for; None where devices do not count.
+    pub control_patches: Option<u64>,
     /// Control points that were computed: by control shaders, into a cache, or before all patches.
     pub points: u64,
     /// Products of a weight and a point in these.
@@ -89,6 +91,7 @@ impl Row {
             "ratio_to_flat": self.ratio_to_flat,
             "decides": self.decides,
             "patches": self.work.decided.drawn,
+            "control_patches": self.work.control_patches,
             "culled_frustum": self.work.decided.frustum,
             "culled_back": self.work.decided.back,
             "culled_small": self.work.decided.small,

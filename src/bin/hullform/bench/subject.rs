@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use ash::vk;
 use hullform::gpu::{
-    Backend, Cut, Decides, DrawList, Fill, Outcome, Pipelines, PointPipeline, Residence,
+    Backend, Batch, Cut, Decides, DrawList, Fill, Outcome, Pipelines, PointPipeline, Residence,
     SurfaceOptions, View,
 };
 use hullform::host::{Bench, Owned, Shot, Style, TimestampQuery};
@@ -305,12 +305,28 @@ impl<'a> Subject<'a> {
         };
         Ok(Work {
             evaluations,
+            control_patches: counted
+                .filter(|_| self.device_counts)
+                .map(|[patches, ..]| patches),
             points: u64::from(counters.points) + u64::from(cached) + computed,
             products: products + terms,
-            draws: batches().map(|batch| batch.draws().len() as u64).sum(),
-            barriers: batches().filter(|batch| batch.waits()).count() as u64,
+            draws: batches().map(|batch| self.draws(batch)).sum(),
+            barriers: batches()
+                .filter(|&batch| batch.waits() && self.draws(batch) > 0)
+                .count() as u64,
             decided,
         })
+    }
+
+    /// How often something is drawn of a batch: of those that the device makes of what it decides some may be left over, in the view of the round or, without a ring, in all.
+    fn draws(&self, batch: Batch<'_>) -> u64 {
+        let surface = self.drawing.surface();
+        if surface.options().decides == Decides::Host {
+            return batch.draws().len() as u64;
+        }
+        let drawing = surface.drawing();
+        let mut views = 0..self.instances.a_draw;
+        u64::from(views.any(|view| !drawing.slot.drawn(batch, view).is_empty()))
     }
 
     /// What was decided about all patches, by the host or the device, each time that they were drawn.

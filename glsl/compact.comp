@@ -6,7 +6,7 @@
 //
 // Sums are those of whole numbers, in an order of their own: nothing depends on what runs when.
 
-#include "abi.glsl"
+#include "lib/cells.glsl"
 
 layout(local_size_x = DECIDE_INVOCATIONS) in;
 
@@ -87,7 +87,7 @@ Needs patch_needs(uint view, uint number) {
     if (!(draw.inside > 0.0)) return Needs(0u, 0u, 0u);
     Patch record = patches[number];
     bool macro_face = (record.flags & PATCH_MACRO) != 0u;
-    uvec2 cells = (uvec2(record.flags >> MACRO_COLUMNS_SHIFT, record.flags >> MACRO_ROWS_SHIFT) & 31u) + 1u;
+    uvec2 cells = cells_of(record);
     float greatest = max(draw.inside, max(max(draw.edges.x, draw.edges.y), max(draw.edges.z, draw.edges.w)));
     // A macro face of one row has two segments across at least.
     uint level = macro_face && any(equal(cells, uvec2(1u))) ? 1u : 0u;

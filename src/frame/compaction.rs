@@ -124,8 +124,7 @@ impl Compaction {
             let levels = levels_of(pass, patch, record);
             let rank = made.list.len() as u32;
             let place = if self.slot.is_some() { rank } else { points };
-            let first = || (rank, place / self.window);
-            while firsts.len() as u32 <= first().1 {
+            while firsts.len() as u32 <= place / self.window {
                 firsts.push(rank);
             }
             made.list.push(patch as u32);

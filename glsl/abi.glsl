@@ -291,6 +291,8 @@ const uint BATCH_FIRST = 4u;
 const uint BATCH_PATCHES = 5u;
 // Word of a `DrawnBatch`: patches an instance.
 const uint BATCH_PER_INSTANCE = 6u;
+// Words of what a workgroup's patches need together: how many are drawn, their points, the most segments of an edge.
+const uint NEEDS_WORDS = 3u;
 // Instead of the number of a patch: behind the last that is drawn.
 const uint NOT_DRAWN = 4294967295u;
 // In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.

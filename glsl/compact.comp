@@ -61,20 +61,20 @@ Needs summed(Needs own) {
 
 uint workgroups() { return (bases.patches + DECIDE_INVOCATIONS - 1u) / DECIDE_INVOCATIONS; }
 
-// Words from a view to the next: batches, list, three words a workgroup and as many for all.
-uint view_words() { return compaction.list - compaction.batches + bases.patches + 3u * (workgroups() + 1u); }
+// Words from a view to the next: batches, list, what each workgroup needs, and what all do.
+uint view_words() { return compaction.list - compaction.batches + bases.patches + NEEDS_WORDS * (workgroups() + 1u); }
 
 uint batch_at(uint view, uint batch) { return compaction.batches + view * view_words() + BATCH_WORDS * batch; }
 
 uint list_at(uint view) { return compaction.list + view * view_words(); }
 
 Needs needs_of(uint view, uint workgroup) {
-    uint at = list_at(view) + bases.patches + 3u * workgroup;
+    uint at = list_at(view) + bases.patches + NEEDS_WORDS * workgroup;
     return Needs(lists[at], lists[at + 1u], lists[at + 2u]);
 }
 
 void keep_needs(uint view, uint workgroup, Needs needs) {
-    uint at = list_at(view) + bases.patches + 3u * workgroup;
+    uint at = list_at(view) + bases.patches + NEEDS_WORDS * workgroup;
     lists[at] = needs.drawn;
     lists[at + 1u] = needs.points;
     lists[at + 2u] = needs.segments;

@@ -298,6 +298,8 @@ constants! {
     BATCH_PATCHES = 5;
     /// Word of a `DrawnBatch`: patches an instance.
     BATCH_PER_INSTANCE = 6;
+    /// Words of what a workgroup's patches need together: how many are drawn, their points, the most segments of an edge.
+    NEEDS_WORDS = 3;
     /// Instead of the number of a patch: behind the last that is drawn.
     NOT_DRAWN = 0xffff_ffff;
     /// In the number of a patch's vertices that bound it: they are the control points of a bicubic B-spline.

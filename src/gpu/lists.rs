@@ -75,7 +75,8 @@ impl Lists {
 
     /// From one view to the next.
     pub fn view_words(&self) -> u32 {
-        abi::BATCH_WORDS * self.batches + self.patches + 3 * (self.workgroups() + 1)
+        let needs = abi::NEEDS_WORDS * (self.workgroups() + 1);
+        abi::BATCH_WORDS * self.batches + self.patches + needs
     }
 
     /// How many patches there are.
